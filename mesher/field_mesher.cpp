@@ -28,7 +28,7 @@ namespace tetwright {
 
 namespace {
 
-/// Gives the faces on the sides of the frame's box the patches 1 to 6.
+/// Sets the patches 1 to 6 of the faces on the sides of the frame's box.
 /// \param sides box_faces() of each point
 void number_box_patches(std::vector<InterfaceTriangle>& interfaces, const std::vector<std::uint8_t>& sides) {
   parallel_for(0, interfaces.size(), CellGrains::elements, [&](std::size_t begin, std::size_t end) {
@@ -61,8 +61,7 @@ TetMesh to_input_units(CutMesh cut, const MaterialField& field) {
   std::vector<RegionIndex>().swap(cut.regions);
   for (const FieldRegion& region : field.regions())
     if (!region.name.empty()) mesh.material_names[region.tag] = region.name;
-  // Positive orientation is promised for the final coordinates; finest_cell_size() leaves room for their
-  // rounding.
+  // Tets must be positive in the final coordinates; finest_cell_size() leaves room for rounding.
   parallel_for(0, mesh.tets.size(), CellGrains::tets, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Tet& t = mesh.tets[i];
@@ -88,8 +87,8 @@ std::vector<std::uint8_t> regions_there(const MaterialField& field,
   return there;
 }
 
-/// The estimate from the regions at the centres of leaves. Nearly exact, except that it ignores cuts between
-/// two materials.
+/// The estimate from the regions at the centres of leaves. Nearly exact, apart from cuts between two
+/// materials, which it ignores.
 MesherEstimate estimate_from_lattice(const Octree& octree, const LatticePoints& points,
                                      const std::vector<NearestRegion>& regions, const MemoryModel& memory,
                                      const MesherOptions& options) {
@@ -197,7 +196,7 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
                                std::move(interface_voxels), finer.cells, progress);
   finer = {};
   report.cells = octree.size();
-  // Thin sheets may have taken far more cells than the surface alone.
+  // Thin sheets may require far more cells than the surface alone.
   require_memory(
       EstimateTuning::Memory::program + EstimateTuning::Memory::per_leaf * static_cast<double>(octree.size()),
       "an octree of " + std::to_string(octree.size()) + " leaves", "use a lower resolution");
@@ -236,7 +235,7 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   lattice.stars.forget_tets();
   CutMesh cut = cut_lattice(std::move(lattice));
   stages.throw_if_stopped();
-  // A region with few lattice points may have vanished by moves or as an isolated vertex.
+  // Moves may have removed a region with few lattice points, or it was an isolated vertex.
   validate_regions(regions_there(*field, cut.regions));
   if (const WallChanges* walls = field->wall_changes()) {
     std::shared_ptr<const MaterialField> as_is = walls->with_true_walls();

@@ -46,8 +46,8 @@ class Stages {
 double finest_cell_size(const MesherOptions& options, double longest_side, double max_coordinate,
                         const std::string& file);
 
-/// How many times cells of this frame can be halved so that the lattice can still be numbered and coordinates
-/// of this size still distinguish its points.
+/// How many times cells of this frame can be halved. Lattice points must still have distinct numbers and, at
+/// coordinates of this size, distinct positions.
 int max_possible_refinement(const GridFrame& frame, double max_coordinate);
 
 /// Converts to input units.

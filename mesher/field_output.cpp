@@ -22,8 +22,8 @@ void write_fields(const MaterialField& field, const std::string& path, OutputFil
       for (int i = 0; i < leaf_points; ++i) {
         const int x = leaf[0] + i / (leaf_side * leaf_side), y = leaf[1] + i / leaf_side % leaf_side,
                   z = leaf[2] + i % leaf_side;
-        // A region's own distance may not reach 0 where it meets others; in a thin region it may be positive
-        // everywhere.
+        // A region's own distance need not reach 0 where it meets others, and in a thin region it may be
+        // positive everywhere.
         const NearestRegion there = sampler->nearest_at_voxel(x, y, z);
         std::array<float, 2> both;
         sampler->values_at_voxel(x, y, z, std::array{number, there.region}, both.data());

@@ -12,7 +12,7 @@ namespace tetwright {
 
 namespace {
 
-/// Dense tets as a share of those of finest cells everywhere.
+/// Number of dense tets as a fraction of their number with finest cells everywhere.
 /// \param cell size of a cell, voxels; the interface of labels curves on the scale of voxels
 double coarse_share(double cell, double adaptivity) {
   if (!(adaptivity > 0)) return 1;

@@ -12,10 +12,10 @@
 namespace tetwright {
 
 // Three estimates of tets and memory, each better than the last: from the input alone (estimate_mesh() in
-// mesher.h), from the octree, and, nearly exact, once every lattice point has its region. Their numbers
-// are those of EstimateTuning.
+// mesher.h), from the octree, and, nearly exact, from the regions of the lattice points. EstimateTuning has
+// the constants.
 
-/// Dense tets at interfaces as a share of those of finest cells.
+/// Number of dense tets at interfaces, as a fraction of their number with finest cells everywhere.
 /// \param coarse fraction of the interface flat enough for cells of twice the size
 /// \param coarsest fraction of the interface flat enough for cells of four times the size, part of `coarse`
 inline double share_of_coarse_cells(double coarse, double coarsest) {

@@ -41,12 +41,13 @@ class SampledSurface {
   double area() const { return surface_.area / (frame_.cell_size * frame_.cell_size); }
   double volume() const { return std::max(0.0, surface_.volume) / std::pow(frame_.cell_size, 3); }
 
-  /// Dense tets of the surface as a share of those of finest cells everywhere: fewer where it is flat.
+  /// Number of dense tets at the surface, as a fraction of their number with finest cells everywhere; smaller
+  /// if the surface is flat.
   double coarse_share(double adaptivity) {
     if (!(adaptivity > 0) || samples_.empty()) return 1;
     const SurfaceTree tree = nearby_triangles();
-    // Samples that are smooth but curved count half: one in twenty of OpenVDB's distances is off by
-    // more than 0.05 voxels there, which keeps about half of such cells from being coarse.
+    // Samples that are smooth but curved count half: there, one in twenty of OpenVDB's distances is off by
+    // more than 0.05 voxels, which prevents about half of such cells from being coarse.
     std::atomic<int> coarse = 0, coarsest = 0;
     parallel_for(0, samples_.size(), 8, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
@@ -73,7 +74,7 @@ class SampledSurface {
             frame_.to_grid(surface_.points[t[2]])};
   }
 
-  /// Takes points spread evenly over the area.
+  /// Samples points spread evenly over the area.
   void take_samples() {
     double sum = 0;
     int next = 0;
@@ -126,7 +127,7 @@ class SampledSurface {
     return {points, triangles};
   }
 
-  /// True if the cell of a level around a sample and its neighbours along the surface could be that large.
+  /// True if a cell of this level around a sample is possible, and so are its neighbours along the surface.
   /// Compares trilinear interpolation between the corners with the distances, as the octree does.
   /// \param plane require that the surface is a plane there
   static bool is_flat(const SurfaceTree& tree, const Sample& sample, int level, double adaptivity,
@@ -140,7 +141,7 @@ class SampledSurface {
   /// Height of a point above the surface along the sample's normal; the surface near the sample is one sheet.
   static double height_over(const SurfaceTree& tree, const Sample& sample, const Vec3& place) {
     const double height = (place - sample.place).dot(sample.normal);
-    // The surface has this distance from the sample's plane there, on the closer side.
+    // The distance of the surface from the sample's plane here; its sign is that of the closer side.
     const Vec3 in_plane = place - height * sample.normal;
     const double away = tree.distance(in_plane, Sampling::reach);
     const bool above = tree.distance(in_plane + Sampling::plane_offset * sample.normal, Sampling::reach) <
@@ -241,7 +242,8 @@ class SurfaceEstimate {
     return for_inside([](const Vec3&) {});
   }
 
-  /// Calls `use(point)` for sample points inside any body; returns the volume that they represent.
+  /// Calls `use(point)` for the sample points inside any body; returns the volume that they represent
+  /// together.
   template <class Use>
   double for_inside(Use&& use) const {
     const Vec3 low = frame_.to_grid(input_.low), size = frame_.to_grid(input_.high) - low;
@@ -282,7 +284,7 @@ class SurfaceEstimate {
       const double share = surfaces_[b].coarse_share(options_.adaptivity);
       const double body_volume = surfaces_[b].volume();
       if (b == 0) add_layers(found.meshed_sides);
-      // The surrounding outside, or the body that contains this one, is usually thick.
+      // The region around a body, the outside or another body, is usually thick.
       const double own = std::min(found.meshed_sides, surfaces_[b].area()), others = found.meshed_sides - own;
       double tets = share * EstimateTuning::Surfaces::tets_per_area *
                     filling(b == 0 && !input_.layers.empty() ? found.meshed_sides : own, body_volume);
@@ -295,7 +297,7 @@ class SurfaceEstimate {
                        options_);
   }
 
-  /// Sides of interfaces in a volume, reduced as tets fill it.
+  /// The area of interface sides in a volume, reduced as tets fill it.
   static double filling(double sides, double volume) {
     return volume > 0 ? sides / (1 + EstimateTuning::Surfaces::half_full_thickness * sides / volume) : 0;
   }
@@ -317,7 +319,7 @@ class SurfaceEstimate {
   }
 
   /// The area of the surface at a depth inside the first body, squared finest cells: the volume between two
-  /// depths close together, divided by their distance.
+  /// nearby depths, divided by their difference.
   double area_at_depth(const SurfaceTree& tree, double depth) {
     const Vec3 size = (input_.high - input_.low) / h_;
     constexpr int n = Sampling::volume_samples;

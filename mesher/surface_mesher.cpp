@@ -44,7 +44,7 @@ bool is_flat(const RepairedSurface& surface) {
   });
 }
 
-/// Throws InputError about a surface that vanished, if it is flat or not closed.
+/// Throws InputError if a surface that vanished from the mesh is flat or not closed.
 void validate_encloses(const MesherInput::Body& body) {
   if (is_flat(body.surface))
     throw InputError(body.file, 0,
@@ -139,8 +139,7 @@ void validate_limits(const MesherOptions& options, double cell) {
                      ", not " + std::to_string(*options.max_refinement));
 }
 
-/// Size of the cells that resolve a body's patches: bodies that are thin everywhere are meshed with smaller
-/// ones.
+/// Size of the cells that resolve a body's patches. Bodies that are thin everywhere get smaller cells.
 double patch_cell(const RepairedSurface& surface, const MesherOptions& options, double cell) {
   if (options.uniform || surface.closed < surface.triangles.size()) return cell;
   const double mean_thickness = 2 * std::abs(surface.volume) / surface.area;
@@ -162,14 +161,14 @@ TriangleMesh all_surfaces(const MesherInput& input) {
 
 /// The patches of all bodies.
 std::vector<SurfacePatches> patches_of(const MesherInput& input, const MesherOptions& options, double cell) {
-  constexpr std::size_t max_patches = 0xfffe;  // one more is used by faces on no surface
+  constexpr std::size_t max_patches = 0xfffe;  // one more is for faces that lie on no surface
   std::size_t count = 0;
   std::vector<SurfacePatches> patches;
   for (const MesherInput::Body& body : input.bodies) {
     const RepairedSurface& surface = body.surface;
     const double shown = patch_cell(surface, options, cell);
     PatchOptions patch_options{options.feature_angle, CellTuning::Patches::min_area * shown * shown};
-    // Where parts intersect there are creases that are not edges of the surface.
+    // Intersections of parts are creases that are not edges of the surface.
     const bool intersecting =
         surface.intersects_itself && options.feature_angle.rule != FeatureAngle::Rule::off;
     if (intersecting) patch_options.angle.rule = FeatureAngle::Rule::off;
@@ -187,7 +186,7 @@ std::vector<SurfacePatches> patches_of(const MesherInput& input, const MesherOpt
   return patches;
 }
 
-/// Gives up the creases of a body except the borders of groups.
+/// Drops the creases of a body except the borders of groups.
 void give_up_creases(const MesherInput::Body& body, SurfacePatches& found) {
   if (!found.any()) return;
   PatchOptions options;
@@ -196,8 +195,8 @@ void give_up_creases(const MesherInput::Body& body, SurfacePatches& found) {
   found.verdict = SurfacePatches::Verdict::meeting;
 }
 
-/// Gives up the creases of surfaces that meet others: the curves in which they meet are known to half a cell,
-/// and no well-shaped tets fit between these and exact creases.
+/// Drops the creases of surfaces that meet others. The curves in which they meet are accurate to half a cell
+/// only, and no well-shaped tets fit between these and exact creases.
 void give_up_where_surfaces_meet(const MesherInput& input, const TetMesh& mesh,
                                  std::vector<SurfacePatches>& patches) {
   if (input.bodies.size() == 1) return;
@@ -221,8 +220,8 @@ void give_up_where_surfaces_meet(const MesherInput& input, const TetMesh& mesh,
   for (const std::size_t b : meeting) give_up_creases(input.bodies[b], patches[b]);
 }
 
-/// Gives up the creases of surfaces whose own gaps are closed over more than a small part of their area:
-/// those creases would lie inside the solid.
+/// Drops the creases of surfaces whose own gaps are closed over more than a small part of their area, since
+/// such creases would lie inside the solid.
 void give_up_where_gaps_are_closed(const MesherInput& input, const MesherReport& report,
                                    std::vector<SurfacePatches>& patches) {
   for (std::size_t b = 0; b < patches.size(); ++b) {
@@ -234,8 +233,8 @@ void give_up_where_gaps_are_closed(const MesherInput& input, const MesherReport&
   }
 }
 
-/// Reports patches and creases. Creases of surfaces that meet others or themselves may also lie inside the
-/// solid, and are not compared.
+/// Reports patches and creases. Omits the creases of surfaces that meet others or themselves, as they may lie
+/// inside the solid.
 void report_features(const MesherInput& input, const std::vector<SurfacePatches>& patches,
                      MesherReport& report) {
   for (std::size_t b = 0; b < patches.size(); ++b) {
@@ -251,8 +250,8 @@ void report_features(const MesherInput& input, const std::vector<SurfacePatches>
   }
 }
 
-/// Drops creases that later bodies carve away, and those near curves where three regions meet, which are
-/// known to half a cell.
+/// Drops creases that later bodies carve away, and creases near curves where three regions meet, which are
+/// accurate to half a cell only.
 void keep_visible(CreaseCurves& creases, const MesherInput& input, const DenseMesh& dense) {
   if (input.bodies.size() == 1) return;
   const double near = CellTuning::Patches::junction_reach * dense.report.cell_size;
@@ -278,7 +277,7 @@ void keep_visible(CreaseCurves& creases, const MesherInput& input, const DenseMe
   std::erase_if(creases.corners, is_hidden);
 }
 
-/// Sets the slack of volumes derived from distances: these chamfer creases, and the mesh does not.
+/// Sets the slack of volumes derived from distances, which chamfer creases that the mesh keeps sharp.
 void allow_for_chamfers(MesherReport& report) {
   double length = 0;
   for (const auto& [a, b] : report.creases.segments)
@@ -287,7 +286,7 @@ void allow_for_chamfers(MesherReport& report) {
     if (e.flaw != SurfaceFlaw::none) e.volume_slack = 0.5 * length * report.cell_size * report.cell_size;
 }
 
-/// Measures thickened walls again, since fitting creases has moved them too.
+/// Measures thickened walls again, since fitting creases has moved their vertices.
 void measure_walls(DenseMesh& dense, const MaterialField& field) {
   const WallChanges* walls = field.wall_changes();
   if (!walls || dense.report.thickened.points == 0) return;
@@ -373,7 +372,8 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   };
   add_thin(sheets.too_thin, true);
   {
-    // Where distances come from the triangles, thin parts and gaps are reported separately.
+    // Exclude voxels whose distances come from the triangles: their thin parts and gaps are reported
+    // separately.
     std::vector<MortonKey> elsewhere = interface_voxels;
     if (const WallChanges* walls = field->wall_changes())
       std::erase_if(elsewhere, [&](MortonKey key) {
@@ -409,7 +409,7 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
     for (const InterfaceTriangle& t : dense.mesh.interfaces)
       if (const SurfaceRegion group = features->group_of(t.patch))
         dense.mesh.patch_groups[{t.pair(), t.patch}] = group;
-    // Where surfaces meet, the borders of groups are known to a cell only, like the curves in which they
+    // Where surfaces meet, the borders of groups are accurate to a cell only, like the curves in which they
     // meet.
     if (std::none_of(patches.begin(), patches.end(), [](const SurfacePatches& p) {
           return p.verdict == SurfacePatches::Verdict::meeting && p.any();

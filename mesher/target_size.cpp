@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Cells for a wanted number of tets. These rules of thumb need only be roughly right, but must not change
-// with estimate_mesh(): they determine the mesh a user gets.
+// Cell sizes for a target number of tets. These rules of thumb need only be roughly right, but must not
+// change with estimate_mesh(), since they determine the mesh.
 
 #include <algorithm>
 #include <array>
@@ -79,13 +79,13 @@ std::vector<Vec3> places_on(const ProjectionTree& surface) {
 
 /// Points where a dense mesh and its surface are too far from each other.
 struct Misfit {
-  /// With the halvings of cells that would suffice if distances fell in proportion.
+  /// With the number of halvings of cells that would suffice if distances fell in proportion.
   std::vector<RefinementRegion> places;
   double worst = 0;
 };
 
 /// Adds the points of one surface that are farther from the other than `allowed`. Points farther than `reach`
-/// have no counterpart: a cap, a layer, the box of an outside.
+/// have no counterpart: they are on a cap, a layer or the box of a meshed outside.
 void add_misfit(const ProjectionTree& from, const ProjectionTree& to, double allowed, double reach,
                 Misfit& misfit) {
   struct Far {
@@ -134,12 +134,12 @@ int resolution_for_target(const MesherInput& input, std::size_t target_tets, con
   for (const MesherInput::Body& b : input.bodies) area += b.surface.area;
   const auto enough = [&](int resolution) {
     const double h = longest / resolution;
-    // A body thinner than a cell has few tets but a lattice as large as its surface: refining it would have
-    // no end.
+    // A body thinner than a cell has few tets but a lattice in proportion to its surface: the resolution
+    // would grow without bound.
     const double lattice = EstimateTuning::Surfaces::tets_per_area * area / (h * h);
     return std::floor(dense_tets(input, h)) >= dense || lattice >= TargetCount::max_lattice_per_dense * dense;
   };
-  // Find the smallest sufficient one; the number of tets grows with the resolution.
+  // Find the smallest sufficient resolution; the number of tets grows with it.
   int low = TargetCount::min_resolution, high = DomainTuning::Frames::max_resolution;
   while (low < high) {
     const int middle = (low + high) / 2;
@@ -186,7 +186,7 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
         longest / (ToleranceCells::first_cell * DomainTuning::Frames::max_resolution));
     throw UsageError(text);
   }
-  // A given count takes more cells than the tolerance alone would: then the fraction that the simplifier's
+  // If the target count requires more cells than the tolerance alone, the fraction that the simplifier's
   // samples can keep is enough.
   const bool counted = options.resolution > std::max<double>(ToleranceCells::min_resolution, cells);
   options.resolution =
@@ -198,7 +198,7 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
                  "give a larger one");
   // Otherwise thin walls would be thickened, and gaps closed, by up to a tolerance.
   if (!options.max_refinement) options.max_refinement = max_wall_refinement;
-  const std::vector<RefinementRegion> refinement_regions = options.refinement_regions;  // for wanted sizes
+  const std::vector<RefinementRegion> refinement_regions = options.refinement_regions;  // for sizes
   const double allowed = ToleranceCells::dense_share * tolerance;
   const int coarse =
       std::max({ToleranceCells::min_resolution, counted ? options.resolution : 0,
@@ -242,7 +242,7 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
     }
     if (++round <= ToleranceCells::max_fine_rounds && worse < ToleranceCells::max_worse_rounds &&
         !options.uniform) {
-      // Where cells were halved before, once more.
+      // Halve cells that were halved before once more.
       for (RefinementRegion& place : misfit.places)
         place.halvings = std::min(DomainTuning::Refinement::max_levels, place.halvings + round - 1);
       options.refinement_regions.insert(options.refinement_regions.end(), misfit.places.begin(),
@@ -253,7 +253,7 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
         of_best.worst > ToleranceCells::min_level_gain * level_worst)
       break;
     level_worst = of_best.worst;
-    // Smaller cells everywhere.
+    // Use smaller cells everywhere.
     round = worse = 0;
     options.refinement_regions = refinement_regions;
     options.resolution = static_cast<int>(std::ceil(ToleranceCells::resolution_growth * options.resolution));
@@ -306,8 +306,8 @@ void choose_cells_for_sizes(const MesherInput& input, const SizeField* target_le
     }
   }
   if (places.empty()) return;
-  // Choose the cell size that gives as many cells as the wanted sizes do, or a somewhat smaller one, so that
-  // few cells have to be halved; never smaller than the smallest.
+  // Choose the cell size that gives as many cells as the target lengths do, or a somewhat smaller one so that
+  // few cells have to be halved, but not smaller than the smallest.
   const double smallest = std::min_element(places.begin(), places.end(), [](const auto& x, const auto& y) {
                             return x.cell < y.cell;
                           })->cell;
@@ -337,7 +337,8 @@ double cell_size_for_target(const LabelInput& labels, std::size_t target_tets, c
     of_cell.voxel_size = cell;
     return static_cast<double>(estimate_mesh(labels, of_cell).tets);
   };
-  double smallest = std::numeric_limits<double>::max();  // of the labels' average parts, voxels
+  // Min over the labels of the mean size of their parts; voxels, then input units cubed.
+  double smallest = std::numeric_limits<double>::max();
   for (const LabelMaterial& m : labels.materials)
     if (const auto voxels = static_cast<double>(m.voxels); voxels > LabelCells::few_voxels)
       smallest = std::min(smallest, voxels / static_cast<double>(m.parts.by_faces));

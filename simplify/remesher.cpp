@@ -29,7 +29,7 @@ using Slots = SimplifyTuning::Slots;
 
 struct Field {
   Field(std::size_t count, std::vector<double>&& numbers) : components(count), values(std::move(numbers)) {
-    values.reserve(2 * values.size());  // since the mesh has room for twice as many slots
+    values.reserve(2 * values.size());  // the mesh has room for twice as many slots
   }
   std::size_t components;
   std::vector<double> values;
@@ -62,7 +62,7 @@ struct Remesher::Impl {
     keep_surfaces();
   }
 
-  /// Compacts, and rebuilds what depends on the whole mesh.
+  /// Compacts, and rebuilds all data that depends on the whole mesh.
   void renumber(Renumbering* numbers) {
     SlotNumbers slots;
     const std::size_t spare = mesh.live_tets() / Slots::remesher_spare_inverse + Slots::remesher_min_spare;
@@ -157,7 +157,7 @@ std::vector<InterfaceFace> Remesher::Impl::interface_faces_of(const std::vector<
   for (Index t : tets)
     for (int f = 0; f < 4; ++f) {
       const FaceLink link = mesh.link(t, f);
-      // List a face between two of the tets once.
+      // List a face between two of the tets only once.
       if (!link.is_interface() ||
           (!link.is_outside() && link.tet() < t && std::binary_search(tets.begin(), tets.end(), link.tet())))
         continue;

@@ -57,7 +57,7 @@ double first_bound(double min_solid_angle) {
   return std::max(Improve::min_first_bound, Closing::margin * min_solid_angle);
 }
 
-/// Checks shared by both calls, before any work.
+/// Validates the input of both calls before any work.
 void check(const TetMesh& mesh, const std::string& name) {
   if (mesh.tets.empty()) throw InputError(name, 0, "no tets in it");
   require_memory(Memory::program_bytes + Memory::bytes_per_tet * static_cast<double>(mesh.tets.size()),
@@ -65,7 +65,7 @@ void check(const TetMesh& mesh, const std::string& name) {
                  "free some, or use a machine or a container limit with more");
 }
 
-/// Number of tets that follows from target lengths, or that their bounds allow.
+/// Number of tets that follows from target lengths, or that the bounds on edge lengths allow.
 std::size_t target_for_sizes(const Engine& engine, const SimplifyOptions& options) {
   double tets = static_cast<double>(options.target_tets);
   if (options.sizes)
@@ -90,8 +90,8 @@ void check_options(const SimplifyOptions& options) {
     throw UsageError("beta must be above 0 and gamma at least 0");
 }
 
-/// False if the deadline of `progress` ended the work. Changes made before are kept: a BlockRunner stops
-/// between batches, when the mesh is whole.
+/// False if the deadline of `progress` ended the work. Earlier changes are kept: a BlockRunner stops between
+/// batches, when the mesh is consistent.
 template <class Work>
 bool done_in_time(const Work& work) {
   try {
@@ -102,7 +102,7 @@ bool done_in_time(const Work& work) {
   return true;
 }
 
-/// Moves the deadline forward to this share of the remaining time for as long as it lives.
+/// During its lifetime, moves the deadline forward to this fraction of the remaining time.
 class EarlierDeadline {
  public:
   EarlierDeadline(Progress* progress, double share) : progress_(progress) {
@@ -131,7 +131,7 @@ TetMesh unchanged(TetMesh mesh, SimplifyReport* report) {
   return mesh;
 }
 
-/// Result of simplify() then: the distance from the surface is measured all the same.
+/// Result of simplify() in this case. The distance from the surface is still measured.
 TetMesh not_simplified(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report,
                        const Progress* progress) {
   if (options.tolerance > 0 && report)
@@ -143,10 +143,10 @@ bool is_bounded(const SimplifyOptions& options) {
   return options.sizes || options.min_edge > 0 || std::isfinite(options.max_edge);
 }
 
-/// The improvement that closes the tuned schedule.
+/// The final improvement of the tuned schedule.
 ///
 /// \param target number of tets; 0: the current one.
-/// \param deviation set if that of the result is known.
+/// \param deviation receives the deviation of the result, if it is known.
 void close(Engine& engine, const SimplifyOptions& options, std::size_t target, std::size_t first_count,
            const Progress* progress, std::optional<DeviationReport>& deviation) {
   const bool bounded = is_bounded(options);
@@ -165,7 +165,7 @@ void close(Engine& engine, const SimplifyOptions& options, std::size_t target, s
   };
   const bool counted = target > 0 && !options.sizes && (!bounded || near_target(engine.mesh().live_tets()));
   const auto count = static_cast<double>(counted ? std::min(target, first_count) : engine.mesh().live_tets());
-  // Without a count, better shapes are worth more tets, and edges shorter than the target length.
+  // Without a target count, better shapes justify more tets and edges shorter than the target length.
   const double slack = counted ? Closing::slack : Closing::free_slack;
   if (options.sizes) engine.allow_shorter_edges();
   const ImprovementPlan plan{.kind = "close",
@@ -177,22 +177,22 @@ void close(Engine& engine, const SimplifyOptions& options, std::size_t target, s
                              .fast = false,
                              .brief = false,
                              .max_rounds = Closing::max_rounds};
-  // After a point has arrived, its neighbours may have more room.
+  // Once a point has reached its feature edge, its neighbours may have more room.
   for (int i = 0; i < Features::closing_sweeps; ++i) fit_feature_edges(engine);
   fit(engine, Closing::sweeps_before, quality_at(engine, plan.angle));
   WholeMesh whole(engine);
   improve_area(tools_of(engine), whole, plan, 1);
   if (!counted) refine_bad_tets(tools_of(engine), whole, plan, options.min_solid_angle);
-  // Better shapes have cost fit.
+  // Improving shapes has worsened the fit.
   fit(engine, Closing::sweeps_after, quality_at(engine, plan.angle));
-  // Fitting may cost a tet that is just above the bound.
+  // Fitting may push a tet below the bound.
   if (!counted) refine_bad_tets(tools_of(engine), whole, plan, options.min_solid_angle);
   if (options.tolerance == 0) return;
   deviation = engine.input_samples().deviation(progress);
   if (deviation->upper() <= options.tolerance) return;
   engine.throw_if_stopped();
   deviation.reset();
-  // If the tolerance has held the count back in the loop, it may do so here.
+  // If the tolerance kept the count above the target in the loop, it may do so here.
   ImprovementPlan holding = plan;
   const auto live = static_cast<double>(engine.mesh().live_tets());
   if (live > static_cast<double>(plan.max_tets))
@@ -225,7 +225,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
       engine.rules.objective.quality =
           TetQuality::for_target(engine.mesh().total_volume(), static_cast<double>(target), options.beta);
   }
-  // Each step takes a good part of the time for a mesh that is large for its limit.
+  // Each step may take a large part of the time if the mesh is large for the time limit.
   const bool built = done_in_time([&] {
     engine.throw_if_stopped();
     if (tuned) engine.compact();
@@ -250,7 +250,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     });
     loop_end = seconds_since(start);
     if (tuned) {
-      // A count that was not reached is no target for the closing.
+      // If the deadline prevented the target, the final improvement keeps the current count.
       const std::size_t closing_target = in_time ? target : engine.mesh().live_tets();
       in_time &= done_in_time([&] {
         engine.recorder().begin_stage("improve");
@@ -281,7 +281,7 @@ DeviationReport deviation(const TetMesh& mesh, const TriangleMesh& surface, cons
 
 namespace {
 
-/// improve() with `only_below`: a Remesher works on the regions of bad tets only.
+/// improve() with `only_below`: a Remesher works only on the regions of bad tets.
 TetMesh improve_bad_regions(TetMesh&& mesh, const ImproveOptions& options, std::size_t min_tets,
                             std::size_t max_tets, SimplifyReport* report, Progress* progress) {
   const auto start = std::chrono::steady_clock::now();
@@ -387,7 +387,7 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
                               .max_tets = plan.max_tets,
                               .max_rounds = std::min(plan.max_rounds, Improve::max_polish_rounds),
                               .remodel = false});
-    // Other connectivity around the last bad tets lets them improve further.
+    // With the connectivity changed around the last bad tets, they may improve further.
     if (plan.max_rounds > 0) run_improvement(tools, whole, plan);
   });
   if (report) {

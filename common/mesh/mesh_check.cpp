@@ -48,16 +48,16 @@ class Checker {
   /// Checks the arrays; false if further checks would be meaningless.
   bool check_arrays() {
     if (mesh_.tets.empty() || mesh_.materials.size() != mesh_.tets.size())
-      add(MeshFault::materials_missing, 1, [&](std::size_t) {
+      add(DiagnosticCode::materials_missing, 1, [&](std::size_t) {
         return MeshPlace{std::to_string(mesh_.tets.size()) + " tets, " +
                              std::to_string(mesh_.materials.size()) + " materials",
                          {},
                          {}};
       });
-    add_tets(MeshFault::index_out_of_range, find_bad(mesh_.tets.size(), [&](std::size_t t) {
+    add_tets(DiagnosticCode::index_out_of_range, find_bad(mesh_.tets.size(), [&](std::size_t t) {
                return *std::max_element(mesh_.tets[t].begin(), mesh_.tets[t].end()) >= mesh_.points.size();
              }));
-    add_points(MeshFault::coordinates_not_finite,
+    add_points(DiagnosticCode::coordinates_not_finite,
                find_bad(mesh_.points.size(), [&](std::size_t p) { return !mesh_.points[p].allFinite(); }));
     return findings_.empty();
   }
@@ -65,17 +65,18 @@ class Checker {
   void check_tets() {
     const auto& tets = mesh_.tets;
     const auto& points = mesh_.points;
-    add_tets(MeshFault::degenerate_tets, find_bad(tets.size(), [&](std::size_t t) {
+    add_tets(DiagnosticCode::degenerate_tets, find_bad(tets.size(), [&](std::size_t t) {
                for (const auto& e : tet_edges)
                  if (tets[t][e[0]] == tets[t][e[1]]) return true;
                return false;
              }));
-    add_tets(MeshFault::duplicate_tets, duplicates());
+    add_tets(DiagnosticCode::duplicate_tets, duplicates());
     std::vector<char> used(points.size(), 0);
     for (const Tet& tet : tets)
       for (Index v : tet) used[v] = 1;
-    add_points(MeshFault::unused_points, find_bad(points.size(), [&](std::size_t p) { return !used[p]; }));
-    add_tets(MeshFault::inverted, find_bad(tets.size(), [&](std::size_t t) {
+    add_points(DiagnosticCode::unused_points,
+               find_bad(points.size(), [&](std::size_t p) { return !used[p]; }));
+    add_tets(DiagnosticCode::inverted, find_bad(tets.size(), [&](std::size_t t) {
                const Tet& v = tets[t];
                return orient3d(points[v[0]], points[v[1]], points[v[2]], points[v[3]]) <= 0;
              }));
@@ -84,7 +85,7 @@ class Checker {
 
   void check_faces(const std::vector<MeshFace>& faces) {
     const std::vector<Index> over = find_bad(faces.size(), [&](std::size_t f) { return faces[f].count > 2; });
-    add(MeshFault::face_over_shared, over.size(),
+    add(DiagnosticCode::face_over_shared, over.size(),
         [&](std::size_t i) { return place("face " + numbers(faces[over[i]].ids), faces[over[i]].ids); });
 
     std::vector<Triangle> boundary;
@@ -94,12 +95,12 @@ class Checker {
     std::vector<SurfaceEdge> bad_edges;
     for (const SurfaceEdge& e : chains.edges)
       if (e.count != 2) bad_edges.push_back(e);
-    add(MeshFault::boundary_edges_not_two, bad_edges.size(), [&](std::size_t i) {
+    add(DiagnosticCode::boundary_edges_not_two, bad_edges.size(), [&](std::size_t i) {
       return place(
           "edge " + numbers(bad_edges[i].ids) + " with " + std::to_string(bad_edges[i].count) + " triangles",
           bad_edges[i].ids);
     });
-    add(MeshFault::boundary_points_non_manifold, chains.surplus_fans, [&](std::size_t i) {
+    add(DiagnosticCode::boundary_points_non_manifold, chains.surplus_fans, [&](std::size_t i) {
       return i < chains.touching_points.size() ? point_place(chains.touching_points[i]) : MeshPlace();
     });
     check_stars(faces);
@@ -111,21 +112,21 @@ class Checker {
  private:
   /// Adds a finding; `place_of(i)` describes the i-th item, which is left out if its text is empty.
   template <class PlaceOf>
-  void add(MeshFault fault, std::size_t count, const PlaceOf& place_of) {
+  void add(DiagnosticCode code, std::size_t count, const PlaceOf& place_of) {
     if (count == 0) return;
-    MeshFinding finding{fault, count, {}};
+    MeshFinding finding{code, count, {}};
     for (std::size_t i = 0; i < std::min(count, options_.places); ++i)
       if (MeshPlace found = place_of(i); !found.text.empty()) finding.places.push_back(std::move(found));
     findings_.push_back(std::move(finding));
   }
-  void add_tets(MeshFault fault, const std::vector<Index>& tets) {
-    add(fault, tets.size(), [&](std::size_t i) {
+  void add_tets(DiagnosticCode code, const std::vector<Index>& tets) {
+    add(code, tets.size(), [&](std::size_t i) {
       return place("tet " + std::to_string(tets[i]) + " (" + numbers(mesh_.tets[tets[i]]) + ")",
                    mesh_.tets[tets[i]]);
     });
   }
-  void add_points(MeshFault fault, const std::vector<Index>& points) {
-    add(fault, points.size(), [&](std::size_t i) { return point_place(points[i]); });
+  void add_points(DiagnosticCode code, const std::vector<Index>& points) {
+    add(code, points.size(), [&](std::size_t i) { return point_place(points[i]); });
   }
   MeshPlace point_place(Index p) const {
     std::string out = "point " + std::to_string(p) + " at ";
@@ -206,13 +207,13 @@ class Checker {
     for (std::size_t i = 1; i < points.size(); ++i)
       if (points[i] == points[i - 1] && (split.empty() || split.back() != points[i]))
         split.push_back(points[i]);
-    add(MeshFault::point_star_split, stars - used_points_,
+    add(DiagnosticCode::point_star_split, stars - used_points_,
         [&](std::size_t i) { return i < split.size() ? point_place(split[i]) : MeshPlace(); });
   }
 
   void check_self_intersections(const std::vector<Triangle>& surface) {
     const auto pairs = self_intersections(mesh_.points, surface);
-    add(MeshFault::self_intersections, pairs.size(), [&](std::size_t i) {
+    add(DiagnosticCode::self_intersections, pairs.size(), [&](std::size_t i) {
       const Triangle &a = surface[pairs[i].first], &b = surface[pairs[i].second];
       return place("triangles " + numbers(a) + " and " + numbers(b),
                    std::array{a[0], a[1], a[2], b[0], b[1], b[2]});
@@ -227,71 +228,15 @@ class Checker {
 
 }  // namespace
 
-const char* mesh_fault_name(MeshFault fault) {
-  switch (fault) {
-    case MeshFault::materials_missing:
-      return "materials_missing";
-    case MeshFault::index_out_of_range:
-      return "index_out_of_range";
-    case MeshFault::coordinates_not_finite:
-      return "coordinates_not_finite";
-    case MeshFault::degenerate_tets:
-      return "degenerate_tets";
-    case MeshFault::duplicate_tets:
-      return "duplicate_tets";
-    case MeshFault::unused_points:
-      return "unused_points";
-    case MeshFault::inverted:
-      return "inverted";
-    case MeshFault::face_over_shared:
-      return "face_over_shared";
-    case MeshFault::boundary_edges_not_two:
-      return "boundary_edges_not_two";
-    case MeshFault::boundary_points_non_manifold:
-      return "boundary_points_non_manifold";
-    case MeshFault::point_star_split:
-      return "point_star_split";
-    case MeshFault::self_intersections:
-      return "self_intersections";
-  }
-  return "unknown";
+std::string mesh_finding_name(const MeshFinding& finding) {
+  std::string name = kind_of(finding.code).name;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
 }
-
-const char* mesh_fault_text(MeshFault fault) {
-  switch (fault) {
-    case MeshFault::materials_missing:
-      return "no tets, or not one material for each tet";
-    case MeshFault::index_out_of_range:
-      return "tets that name a point that does not exist";
-    case MeshFault::coordinates_not_finite:
-      return "points whose coordinates are not finite";
-    case MeshFault::degenerate_tets:
-      return "tets with a repeated vertex";
-    case MeshFault::duplicate_tets:
-      return "tets with the same vertices as an earlier one";
-    case MeshFault::unused_points:
-      return "points that no tet uses";
-    case MeshFault::inverted:
-      return "inverted or flat tets";
-    case MeshFault::face_over_shared:
-      return "faces of more than two tets";
-    case MeshFault::boundary_edges_not_two:
-      return "boundary edges without exactly two boundary triangles";
-    case MeshFault::boundary_points_non_manifold:
-      return "points in which parts of the boundary touch";
-    case MeshFault::point_star_split:
-      return "points in which tets touch without a chain of common faces";
-    case MeshFault::self_intersections:
-      return "intersecting pairs of boundary or interface triangles";
-  }
-  return "unknown";
-}
-
-bool is_warning(MeshFault fault) { return fault == MeshFault::unused_points; }
 
 bool is_valid(const std::vector<MeshFinding>& findings) {
-  return std::all_of(findings.begin(), findings.end(),
-                     [](const MeshFinding& f) { return is_warning(f.fault); });
+  return std::none_of(findings.begin(), findings.end(),
+                      [](const MeshFinding& f) { return kind_of(f.code).severity == Severity::error; });
 }
 
 std::vector<MeshFinding> check_mesh(const TetMesh& mesh, const MeshCheckOptions& options) {
@@ -312,13 +257,20 @@ std::vector<MeshFinding> check_mesh(const TetMesh& mesh, const MeshCheckOptions&
 }
 
 std::string mesh_finding_line(const MeshFinding& finding) {
-  std::string out = std::string(mesh_fault_text(finding.fault)) + " (" + mesh_fault_name(finding.fault) +
+  std::string out = std::string(kind_of(finding.code).message) + " (" + mesh_finding_name(finding) +
                     "): " + std::to_string(finding.count);
   for (std::size_t i = 0; i < finding.places.size(); ++i) {
     out += i > 0 ? "; " : finding.count == 1 ? ", at " : ", the first at ";
     out += finding.places[i].text;
   }
   return out;
+}
+
+Diagnostic diagnostic_of(const MeshFinding& finding) {
+  Diagnostic d{.code = finding.code, .what = mesh_finding_line(finding)};
+  for (const MeshPlace& place : finding.places)
+    if (place.at) d.places.push_back(*place.at);
+  return d;
 }
 
 }  // namespace tetwright

@@ -21,9 +21,9 @@ struct PointMove {
   }
 };
 
-/// Moves all points at once. Moves at a tet that they spoil are shortened together until no tet is spoilt:
-/// each keeps a tangent of `min_tangent`, or its own if that was smaller. The result does not depend on the
-/// number of threads.
+/// Moves all points at once. If the moves spoil a tet, all moves of its vertices are shortened together until
+/// it is no longer spoilt. A tet is spoilt if its tangent falls below `min_tangent`, or below its previous
+/// value if that was smaller. The result does not depend on the number of threads.
 /// \param min_tangent as min_solid_angle_tangent()
 void displace_with_backtracking(std::vector<Vec3>& points, const std::vector<Tet>& tets,
                                 std::vector<PointMove>& moves, double min_tangent);

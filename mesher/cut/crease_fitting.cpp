@@ -44,7 +44,7 @@ class Fitter {
   }
 
  private:
-  /// The target of point p if it were at `at`.
+  /// The target position of vertex p if it were at `at`.
   std::optional<Vec3> place_of(Index p, const Vec3& at) const {
     const FeatureLabel& label = labels_.of(p);
     const FeatureSurface::Patch* patches = label.patches.begin();
@@ -63,7 +63,7 @@ class Fitter {
     return {};
   }
 
-  /// True for points of thickened walls in passes that would spoil their tets.
+  /// True for vertices of thickened walls in passes that would spoil their tets.
   bool must_stay(Index p, double floor) const {
     const WallChanges* walls = field_.wall_changes();
     return walls && floor < Fitting::wall_floor && labels_.of(p).kind == Kind::patch &&
@@ -183,8 +183,8 @@ class Fitter {
   double cell_;
 };
 
-/// The patch of a face: the one that its points have in common. Among several, or if there is none, the
-/// closest and best aligned one.
+/// The patch of a face: the one common to its vertices. If several or none are common, the closest and best
+/// aligned patch.
 FeatureSurface::Patch patch_of(const TetMesh& mesh, const InterfaceTriangle& t, const CreaseLabels& labels,
                                const FeatureSurface& surface, double cell) {
   const std::optional<std::size_t> body = surface.body_of(t);

@@ -13,12 +13,12 @@ namespace tetwright {
 /// A mesh cut from a lattice chamfers creases: its points lie on one patch or the other, and edges between
 /// them cross the crease. The end of such an edge nearer to the crease is moved onto it, or the edge is split
 /// where that would flatten a triangle. (Isosurface stuffing, Labelle & Shewchuk 2007, does so with lattice
-/// points; doing it on the boundary treats convex and concave creases alike.) Then every point moves to its
-/// corner, crease or patch as far as tets keep their shapes, and the points around it make room.
+/// points; doing it on the boundary treats convex and concave creases alike.) Then every vertex moves to its
+/// corner, crease or patch as far as tet quality permits, and the vertices around it make room.
 ///
-/// Points where three regions meet stay on their junction curves. Points on walls that `field` thickens stay
-/// where shapes would suffer. Where faces come to intersect, points return to their previous positions. The
-/// result does not depend on the number of threads.
+/// Vertices where three regions meet stay on their junction curves. Vertices on walls that `field` thickens
+/// stay if moving them would spoil tets. If faces intersect afterwards, their vertices return to their
+/// previous positions. The result does not depend on the number of threads.
 /// \param mesh within about one cell of the surface
 /// \param field the mesh was cut from it
 /// \param cell size of the cells at the surface, input units

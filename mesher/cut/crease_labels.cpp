@@ -125,8 +125,8 @@ std::vector<std::array<Index, 2>> CreaseLabels::crossing_edges() const {
 
 void CreaseLabels::take_corners() {
   if (surface_.corners().empty()) return;
-  // Choose a point of a triangle whose points belong to three patches of the corner, else of a triangle that
-  // a crease crosses, else the closest point of one of these patches.
+  // Prefer a vertex of a triangle whose vertices belong to three patches of the corner, then one of a
+  // triangle that a crease crosses, then the closest vertex of one of these patches.
   std::vector<Vec3> positions;
   std::vector<ProjectionTree::Item> items;
   for (Index i = 0; i < points_.size(); ++i) {
@@ -143,7 +143,7 @@ void CreaseLabels::take_corners() {
     PatchSet meeting;
     for (const FeatureSurface::Patch p : corner.patches) meeting.insert(p);
     if (meeting.size() < 3) continue;  // see take_kinks()
-    // Two points would not fit next to each other.
+    // Two vertices would not fit next to each other.
     const auto beside = std::find_if(taken.begin(), taken.end(), [&](const Taken& t) {
       return (surface_.corners()[t.corner].point - corner.point).norm() < Labelling::narrow_reach * cell_;
     });
@@ -198,7 +198,7 @@ std::optional<CreaseLabels::Crossing> CreaseLabels::find_crossing(Index u, Index
         return (a.contains(pair[0]) && b.contains(pair[1])) || (a.contains(pair[1]) && b.contains(pair[0]));
       }))
     return crossing;
-  // Patches between the two may be too narrow for the cells: their creases are merged.
+  // If the patches between the two are too narrow for the cells, their creases are merged.
   if (!find([&](const Pair& pair) {
         return a.contains(pair[0]) || a.contains(pair[1]) || b.contains(pair[0]) || b.contains(pair[1]);
       }))
@@ -221,7 +221,7 @@ std::optional<CreaseLabels::Crossing> CreaseLabels::find_crossing(Index u, Index
 bool CreaseLabels::may_snap(Index point, const PatchSet& patches) const {
   const auto& around = triangles_at_[number_[point]];
   return std::none_of(around.begin(), around.end(), [&](Index t) {
-    // With three points on one crease the triangle would become flat.
+    // A triangle with all three vertices on one crease would become flat.
     PatchSet shared = patches;
     for (const Index p : mesh_.interfaces[t].ids)
       if (p != point) shared = shared.common(labels_[number_[p]].patches);
@@ -280,7 +280,7 @@ void CreaseLabels::resolve_rest() {
 }
 
 void CreaseLabels::take_kinks() {
-  // Choose among points of the crease, so that it passes through the kink.
+  // Choose among vertices on the crease, so that it passes through the kink.
   std::vector<Vec3> positions;
   std::vector<ProjectionTree::Item> items;
   for (Index i = 0; i < points_.size(); ++i) {
@@ -294,7 +294,7 @@ void CreaseLabels::take_kinks() {
     const auto hit =
         tree.nearest_of(corner.point, Labelling::corner_reach * cell_, [&](const ProjectionTree::Item& item) {
           const Index i = item.kind[0];
-          // The point must lie between points of one patch and points of the other.
+          // The vertex must lie between vertices of one patch and vertices of the other.
           return labels_[i].kind == Kind::crease &&
                  std::all_of(corner.patches.begin(), corner.patches.end(), [&](FeatureSurface::Patch p) {
                    if (!labels_[i].patches.contains(p)) return false;
@@ -333,7 +333,7 @@ void CreaseLabels::dissolve_islands() {
 }
 
 void CreaseLabels::track(const std::vector<std::array<Index, 2>>& edges) {
-  // Include the neighbours of crossing edges: once a point has moved onto a crease, other edges at it may
+  // Include the neighbours of crossing edges: after a vertex has moved onto a crease, its other edges may
   // cross one.
   std::vector<std::uint8_t> tracked(points_.size(), 0);
   for (const auto& edge : edges)
@@ -376,7 +376,7 @@ void CreaseLabels::split(const Crossing& crossing) {
   labels_.push_back(crossing.label());
   triangles_at_.emplace_back();
   tets_at_.emplace_back();
-  // Each keeps u and cedes v to a new one.
+  // Each tet keeps u; a new tet takes v.
   for (const Index t : tets) {
     const auto added = static_cast<Index>(mesh_.tets.size());
     Tet second = mesh_.tets[t];

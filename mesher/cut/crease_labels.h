@@ -11,7 +11,7 @@
 
 namespace tetwright {
 
-/// The patches that a boundary point belongs to, ascending. A corner of more than `capacity` patches keeps
+/// The patches that a boundary vertex belongs to, ascending. A corner of more than `capacity` patches keeps
 /// the first ones inserted.
 class PatchSet {
  public:
@@ -45,7 +45,7 @@ class PatchSet {
   std::array<FeatureSurface::Patch, capacity> items_{};
 };
 
-/// The feature that a boundary point represents.
+/// The feature that a boundary vertex represents.
 struct FeatureLabel {
   enum class Kind : std::uint8_t {
     none,    ///< more than two regions meet here, or the surface is not near
@@ -56,16 +56,16 @@ struct FeatureLabel {
   Kind kind = Kind::none;
   PatchSet patches;
   Index corner = no_index;  ///< index into FeatureSurface::corners()
-  /// For a crease. Where one point represents two creases close to each other, the nearer one.
+  /// Set for a crease. If the point represents two creases close to each other, the nearer one.
   FeatureSurface::PatchPair crease{};
 };
 
-/// Labels the boundary points of a dense mesh such that, as far as possible, the three points of each face
-/// have a patch in common. Edges between faces of different patches then follow creases.
+/// Labels the boundary vertices of a dense mesh such that, as far as possible, the three vertices of each
+/// face have a patch in common. Edges between faces of different patches then follow creases.
 class CreaseLabels {
  public:
-  /// Labels the points of `mesh.interfaces`. An edge that crosses a crease far from both ends is split, which
-  /// adds tets, points and interfaces.
+  /// Labels the vertices of `mesh.interfaces`. An edge that crosses a crease far from both ends is split,
+  /// which adds tets, vertices and interface triangles.
   /// \param cell as for fit_creases()
   CreaseLabels(TetMesh& mesh, const FeatureSurface& surface, double cell);
 

@@ -11,8 +11,8 @@ namespace {
 
 using EdgeKey = std::uint64_t;
 
-/// The boundary edges of the parts into which materials divide the faces of the box, ascending: edges with
-/// exactly one triangle of a pair of materials on a face of the box.
+/// The edges at which the boundary faces on a side of the box change their material or end, ascending: edges
+/// with exactly one triangle of a given pair of materials on that side.
 std::vector<EdgeKey> find_crease_edges(const TetMesh& mesh) {
   using Sheet = std::pair<std::pair<MaterialTag, MaterialOrOutside>, std::uint16_t>;
   std::vector<std::pair<EdgeKey, Sheet>> sides;
@@ -95,7 +95,7 @@ std::optional<Vec3> CutOffSurface::onto_patch(const Vec3& point, MaterialOrOutsi
   const Vec3& normal = normals_[axis];
   const double off = normal.dot(point - frame.origin - frame.cell_size * side * frame.axes.col(axis));
   if (std::abs(off) > max_distance) return {};
-  // Removes the rounding: the mesh has its points exactly there.
+  // Removes the rounding error: the vertices of the mesh lie exactly on the box.
   Vec3 place = frame.to_grid(point - off * normal);
   place[axis] = side;
   return frame.to_input(place);

@@ -16,7 +16,7 @@ class TwoRegions {
   TwoRegions(const CutCase& cut, RegionIndex region, Pieces& pieces, int& count)
       : region_(region), pieces_(pieces), count_(count) {
     // Sort the corners: this region (by rank), on the interface, other region (by rank). Record whether that
-    // inverted the tet.
+    // inverts the tet.
     const auto place = [&](int k) {
       return cut.regions[k] == region ? 0 : cut.regions[k] == on_interface ? 1 : 2;
     };
@@ -63,8 +63,8 @@ class TwoRegions {
  private:
   PieceVertex at(int k) const { return corner(v_[k]); }
   PieceVertex between(int k, int l) const { return static_cast<PieceVertex>(at(k) | at(l)); }
-  /// Each piece lists its vertices at the positions of the corners they come from or are cut towards. It is
-  /// positive because its matrix of barycentric coordinates is triangular up to a positive minor.
+  /// Each vertex of a piece takes the slot of the corner that it coincides with or is cut towards. The piece
+  /// is positive because its matrix of barycentric coordinates is triangular up to a positive minor.
   void emit(PieceVertex a, PieceVertex b, PieceVertex c, PieceVertex d) {
     if (turned_) std::swap(c, d);
     pieces_[count_++] = {{a, b, c, d}, region_};

@@ -31,7 +31,7 @@ using Pieces = std::array<Piece, max_pieces>;
 /// Cuts a tet into pieces of one region each, all oriented like the tet.
 ///
 /// - One region: the tet itself.
-/// - Two regions: a smaller tet and a prism, or two prisms. Where two corners are on either side, one
+/// - Two regions: a smaller tet and a prism, or two prisms. With two corners on either side, one
 ///   quadrilateral lies inside the tet, and `other_diagonal` chooses its diagonal.
 /// - Three or four regions: a face of two regions is cut as above, a face of three regions into six triangles
 ///   around its own point. All triangles are joined to an interior point, or to the corner on an interface if

@@ -35,7 +35,7 @@ RegionSet pure_regions(const LabelledLattice& lattice, const Tet& t) {
   return set;
 }
 
-/// Whether a tet is cut, kept whole or left out.
+/// How a tet is treated.
 enum class Fate { cut, whole, dropped };
 Fate fate(const LabelledLattice& lattice, const Tet& t, RegionIndex& region) {
   region = on_interface;
@@ -66,13 +66,13 @@ Vec3 edge_cut(const LabelledLattice& lattice, Index a, Index b) {
   return lattice.positions[a] + share * (lattice.positions[b] - lattice.positions[a]);
 }
 
-/// Raises the coordinates below `smallest` to it and lowers the others, so that the sum stays 1. Unchanged if
-/// there are none.
+/// Raises coordinates below `smallest` to it and lowers the others so that the sum stays 1. Returns them
+/// unchanged if none is below.
 template <int N>
 Eigen::Matrix<double, N, 1> kept_off_the_ends(const Eigen::Matrix<double, N, 1>& shares, double smallest) {
   Eigen::Matrix<double, N, 1> excess = (shares.array() - smallest).max(0.0);
   const double sum = excess.sum();
-  // All equal if nothing is left to distribute, or if they are not numbers.
+  // Make all equal if nothing is left to distribute or if the sum is not finite.
   if (!(sum > 0) || !std::isfinite(sum))
     excess.setConstant(1), excess /= N;
   else
@@ -80,8 +80,8 @@ Eigen::Matrix<double, N, 1> kept_off_the_ends(const Eigen::Matrix<double, N, 1>&
   return (excess.array() * (1 - N * smallest) + smallest).matrix();
 }
 
-/// The point of a simplex of N corners of different regions where linear interpolation gives all regions
-/// equal distances.
+/// The point of a simplex, with N corners in different regions, at which linear interpolation gives all
+/// regions equal distances.
 template <int N>
 Vec3 meeting_point(const LabelledLattice& lattice, const std::array<Index, N>& corners, double smallest) {
   Eigen::Matrix<double, N, N> equations;
@@ -103,15 +103,15 @@ Vec3 meeting_point(const LabelledLattice& lattice, const std::array<Index, N>& c
 
 Vec3 face_cut(const LabelledLattice& lattice, const FaceKey& key) {
   Vec3 point = meeting_point<3>(lattice, key, CutTuning::Cuts::min_face_share);
-  // Shares add up to 1 only up to rounding, but no point may leave a face of the box.
+  // Shares add up to 1 only within rounding, but no vertex may leave a face of the box.
   const Vec3 &a = lattice.positions[key[0]], &b = lattice.positions[key[1]], &c = lattice.positions[key[2]];
   for (int k = 0; k < 3; ++k)
     if (a[k] == b[k] && a[k] == c[k]) point[k] = a[k];
   return point;
 }
 
-/// The interior point of a tet of three or four regions: where all four meet, or the middle of the junction
-/// curve between its two faces of three regions.
+/// The interior point of a tet with three or four regions: the point where all four meet, or the middle of
+/// the junction curve between its two faces of three regions.
 Vec3 tet_cut(const LabelledLattice& lattice, const Tet& t) {
   if (pure_regions(lattice, t).size() == 4) {
     Tet sorted = t;
@@ -257,7 +257,7 @@ int corners_of(PieceVertex vertex, std::array<int, 4>& corners) {
   return n;
 }
 
-/// Numbers the points by first use and drops unused ones.
+/// Numbers the vertices by first use and drops unused ones.
 void compact(const LabelledLattice& lattice, const std::vector<Vec3>& cuts, CutMesh& mesh) {
   const std::vector<Vec3>& positions = lattice.positions;
   std::vector<Index> number(positions.size() + cuts.size(), no_index);

@@ -16,17 +16,17 @@ struct CutMesh {
   std::vector<std::uint8_t> on_interface;  ///< 1 for cuts and for points moved onto an interface
 };
 
-/// The smallest solid angle of those pieces of a tet that become part of the mesh, as the tangent of half the
-/// angle. 1, more than any tet has, if there is no such piece.
+/// The smallest solid angle among the pieces of a tet that become part of the mesh, as the tangent of half
+/// the angle. Returns 1, which no tet reaches, if there is no such piece.
 /// \pre the tet has a point near an interface
 double worst_piece_tangent(const LabelledLattice& lattice, const Tet& tet);
 
 /// Cuts the lattice along its interfaces; tets outside are dropped unless the lattice keeps the outside.
 ///
-/// Each cut edge, face or tet gets one new point, by linear interpolation of the distances, at a minimum
-/// distance from the corners. Tets keep the lattice's order; points are numbered by first use. The lattice's
-/// tets are freed while the mesh is built, which takes 20 bytes per lattice tet in addition to the lattice's
-/// points.
+/// Each cut edge, face or tet gets one new vertex, by linear interpolation of the distances, at a minimum
+/// distance from the corners. Tets keep the lattice's order; vertices are numbered by first use. The
+/// lattice's tets are freed while the mesh is built, which takes 20 bytes per lattice tet in addition to the
+/// lattice points.
 CutMesh cut_lattice(LabelledLattice lattice);
 
 }  // namespace tetwright

@@ -40,7 +40,7 @@ class FeatureSurface : public ReferenceSurface {
 
   /// \param patches of each body, in the order of `input.bodies`; renumbered from 0, body by body
   /// \param corner_reach as for find_creases()
-  /// \param field answers for faces without patches
+  /// \param field answers queries for faces without patches
   FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach,
                  std::shared_ptr<const MaterialField> field);
 
@@ -59,14 +59,14 @@ class FeatureSurface : public ReferenceSurface {
     return corner_points_.nearest(point, {}, max_distance);
   }
 
-  /// The body whose surface a face is on. Between two materials it is the later body, since later bodies
-  /// carve earlier ones. Nothing between layers of one body, and on the box of a meshed outside.
+  /// The body whose surface a face lies on. Between two materials it is the later body, since later bodies
+  /// carve earlier ones. std::nullopt between layers of one body and on the box of a meshed outside.
   std::optional<std::size_t> body_of(const InterfaceTriangle& face) const;
   /// The closest point on a body's surface within `at_most`.
   /// \param facing if given, only triangles whose normal is not opposite to it count
   std::optional<Place> nearest(const Vec3& p, std::size_t body, double at_most,
                                const Vec3* facing = nullptr) const;
-  /// The patch of faces that are on no surface; the field answers for them.
+  /// The patch of faces that lie on no surface; queries for it go to the field.
   Patch no_patch() const { return no_patch_; }
   /// The closest point on one patch within `at_most`.
   std::optional<Place> nearest_of_patch(const Vec3& p, Patch patch, double at_most) const;

@@ -15,7 +15,7 @@ using Mask = std::uint64_t;
 
 constexpr Mask bit(int i) { return Mask{1} << i; }
 
-/// Stands for the space beyond the box, where there is no lattice point.
+/// The region of the space beyond the box, which has no lattice points.
 constexpr RegionIndex beyond_box = 0xfffe;
 
 /// The link of a point as bit masks over at most 64 neighbours. Lattice stars have at most 17; only octrees
@@ -124,9 +124,9 @@ struct Link {
     return std::popcount(mask) - twice_edges / 2 + inside == 1;
   }
 
-  /// True if no region appears twice around the edge from the centre to neighbour i. The points of that
-  /// edge's link are a cycle, in which each region must have one stretch (points on interfaces do not
-  /// interrupt it). Otherwise two regions could touch along the edge alone, with a third one on either side.
+  /// True if no region appears twice around the edge from the centre to neighbour i. The link of that edge is
+  /// a cycle, in which each region must form one stretch (points on interfaces do not interrupt it).
+  /// Otherwise two regions could touch along the edge alone, with a third one on either side.
   bool one_stretch_each(int i) {
     // The two neighbours of each point of the cycle.
     std::array<std::array<int, 2>, capacity> beside;
@@ -163,7 +163,7 @@ struct Link {
   bool regular(const RegionSet& regions, Mask keep) {
     for (RegionIndex r : regions) {
       const Mask part = of_region(r) & keep;
-      // On a sphere of two regions each is connected if and only if neither encloses anything.
+      // On a sphere divided into two regions, both are discs if and only if both are connected.
       if (regions.size() == 2 ? !one_piece(part) : !one_disc(part)) return false;
     }
     return true;

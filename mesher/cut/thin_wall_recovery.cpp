@@ -16,7 +16,7 @@ namespace tetwright {
 
 namespace {
 
-/// The moves that return points displaced by thickened walls.
+/// The moves that return vertices displaced by thickened walls.
 std::vector<PointMove> find_moves(const std::vector<Vec3>& points,
                                   const std::vector<std::uint8_t>& is_on_interface, const WallChanges& walls,
                                   const MaterialField& as_is) {
@@ -31,7 +31,7 @@ std::vector<PointMove> find_moves(const std::vector<Vec3>& points,
           Vec3 gradient;
           const double off = owned->between((*both)[0], (*both)[1], points[p], gradient);
           const double slope = gradient.squaredNorm();
-          // No wall was thickened by more; a longer step comes from distances without slope.
+          // No wall was thickened by more. A longer step means that the distances have hardly any slope here.
           if (!(std::abs(off) < CutTuning::WallRecovery::max_step * std::sqrt(slope))) continue;
           out.push_back({static_cast<Index>(p), points[p], -gradient * (off / slope)});
         }

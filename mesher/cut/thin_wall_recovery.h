@@ -20,7 +20,7 @@ struct ThickenedWalls {
 };
 
 /// Moves the interfaces of thin walls that the field has thickened (see thin_walls.h) back to their true
-/// positions, as far as tets keep solid angles of 0.1 sr; tets that are worse already get no worse. The
+/// positions, as far as tets keep solid angles of 0.1 sr. Tets that are already below that get no worse. The
 /// result does not depend on the number of threads.
 /// \param as_is walls.with_true_walls()
 /// \return the walls that could not be moved back

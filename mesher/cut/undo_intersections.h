@@ -8,9 +8,9 @@
 namespace tetwright {
 
 /// Moves points back to `before` until no two `faces`, the boundary and interfaces of the tets, intersect.
-/// Tets guard their own shapes when points move, but the outside has none that could invert. A tet that this
-/// would invert has all its points moved back too. Faces that intersected before do so again. The result does
-/// not depend on the number of threads.
+/// Quality bounds on tets cannot prevent intersections through the outside, which has no tets. If moving back
+/// would invert a tet, all its points are moved back. Faces that intersected in `before` may intersect again.
+/// The result does not depend on the number of threads.
 void undo_intersections(std::vector<Vec3>& points, const std::vector<Tet>& tets,
                         const std::vector<Triangle>& faces, const std::vector<Vec3>& before);
 

@@ -22,8 +22,8 @@ namespace {
 
 using Snapping = CutTuning::Snapping;
 
-/// A hash that spreads neighbouring points over the order, so that groups processed concurrently rarely share
-/// points.
+/// A hash that scatters neighbouring points in the processing order, so that groups processed concurrently
+/// rarely share points.
 std::uint32_t scattered(Index i) {
   std::uint32_t h = i * 0x9e3779b9u;
   h ^= h >> 15;
@@ -72,15 +72,14 @@ std::vector<std::size_t> scatter_groups(std::vector<Index>& items, Priority&& pr
 struct Candidate {
   Index point;
   Index other;     ///< the other end of the edge with the nearest cut
-  Vec3 projected;  ///< projection onto where all regions of the star meet
+  Vec3 projected;  ///< projection onto the set where all regions of the star meet
   /// Edge to `other` before any point was moved; a multiple of half a lattice unit, exact in a float.
   Eigen::Vector3f edge;
   std::uint8_t at_junction;  ///< 1 if the star has more than two regions
   std::uint8_t rank;         ///< distance from the interface or junction, in steps
 
   double room() const { return edge.cast<double>().norm(); }
-  /// Points near junction curves are moved first: once moved onto an interface they could not reach the
-  /// curve.
+  /// Points near junction curves move first: after a move onto an interface they could not reach the curve.
   int priority() const { return at_junction ? rank : rank + static_cast<int>(Snapping::distance_steps) + 1; }
 };
 
@@ -117,7 +116,7 @@ class Mover {
  private:
   StarMap::Tets star(Index p) const { return lattice_.stars.tets(p); }
 
-  /// The candidate that is tried as number i.
+  /// The i-th candidate to be tried.
   const Candidate& candidate(Index i) const { return candidates_[by_rank_[i]]; }
 
   static constexpr auto one_priority = [](Index) { return 0; };
@@ -163,7 +162,7 @@ class Mover {
     return volume && volume->is_certain(lattice_.positions[p]);
   }
 
-  /// The candidate for a point, or nothing if no cut is too close to it or it must not be moved.
+  /// The candidate for a point; std::nullopt if no cut is too close to it or it must not be moved.
   std::optional<Candidate> as_candidate(Index p, FieldSampler& sampler) const {
     const RegionIndex own = lattice_.first_region[p];
     if (is_certain(p)) return std::nullopt;
@@ -195,7 +194,7 @@ class Mover {
     c.at_junction = regions->size() > 2;
     c.edge = (to - from).cast<float>();
     c.projected = from;
-    // Across a ridge of the distance the gradient does not lead to the interface.
+    // Beyond a ridge of the distance the gradient does not lead to the interface.
     if (!sampler.project(*regions, c.projected, held_axes(p)) || (c.projected - from).norm() > c.room())
       c.projected = on_edge(c);
     const double distance = c.at_junction ? (c.projected - from).norm() : lattice_.margin(p);
@@ -203,8 +202,8 @@ class Mover {
     return c;
   }
 
-  /// The axes along which a point cannot move, a bit each: points stay on the faces, edges and corners of the
-  /// box.
+  /// The axes along which a point must not move, one bit each: points stay on the faces, edges and corners of
+  /// the box.
   unsigned held_axes(Index p) const {
     const unsigned faces = lattice_.box_faces(p);
     unsigned axes = 0;
@@ -246,7 +245,7 @@ class Mover {
     });
   }
 
-  /// True if all incident lattice tets would have solid angles of at least 0.1 sr with the point at `place`.
+  /// True if all incident lattice tets have solid angles of at least 0.1 sr with the point at `place`.
   bool star_is_good(Index p, const Vec3& place) const {
     for (Index t : star(p)) {
       std::array<const Vec3*, 4> x;
@@ -266,7 +265,7 @@ class Mover {
     if (!projected && !star_is_good(c.point, cut)) return false;
     const std::optional<RegionSet> regions = regions_if_moved(lattice_, c.point);
     if (!regions) return false;
-    // The cut of an edge is on the interface of two regions, not on a junction curve.
+    // The cut of an edge lies on the interface of two regions, not on a junction curve.
     const bool on_interface_of_two = regions->size() == 2 && regions->contains(other_region(c));
     if (projected && (c.projected != cut || on_interface_of_two)) return put(c.point, c.projected);
     return on_interface_of_two && star_is_good(c.point, cut) && put(c.point, cut);
@@ -291,8 +290,8 @@ class Mover {
     return sum / count;
   }
 
-  /// Moves the point to a projection onto the interface closer to the middle of its star, where the incident
-  /// tets are better shaped. Returns false if no such position is valid.
+  /// Moves the point to a position on the interface closer to the middle of its star, where the incident tets
+  /// are better shaped. Returns false if no such position is valid.
   bool project_nearer_to_middle(const Candidate& c, FieldSampler& sampler) {
     const Index p = c.point;
     const std::optional<RegionSet> regions = regions_if_moved(lattice_, p);

@@ -17,8 +17,8 @@ struct SnapCounts {
 };
 
 /// Moves lattice points that are too close to a cut of one of their edges onto the interface, where cutting
-/// would leave badly shaped tets (isosurface stuffing, Labelle & Shewchuk 2007; the limits and the order are
-/// our own, see the constants).
+/// would leave badly shaped tets (isosurface stuffing, Labelle & Shewchuk 2007, with different limits and
+/// order: see CutTuning::Snapping).
 ///
 /// Points nearest to the interface are moved first. A move is refused if it would give an incident lattice
 /// tet a solid angle below 0.1 sr or change the topology of the regions around the point (link_topology.h).

@@ -28,7 +28,7 @@ BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool ke
         measure_local_thickness(surface, *surfaces[b], voxels,
                                 {limits.min_gap / voxels.cell_size, limits.min_thickness / voxels.cell_size},
                                 std::move(exact), progress);
-    // Smaller cells in narrow patches would tear thin walls next to them.
+    // Smaller cells at narrow patches would tear thin walls next to them.
     if (!all_measured[b].voxels.empty()) {
       narrow = {};
       all_measured[b].exact = std::move(asked.voxels);

@@ -19,14 +19,14 @@ struct BodyField {
   std::shared_ptr<const LevelSetField> field;
   RefinementRegions finer;  ///< cells to be split for thin walls and gaps of one surface, narrow patches and
                             ///< requested regions
-  /// Body and wall, for walls and gaps that the mesh still shows changed.
+  /// Body and wall, for each wall or gap that stays changed in the mesh.
   std::vector<std::pair<std::size_t, ChangedWall>> changed;
   double filling_tets = 0, filling_tets_thickened = 0;  ///< of all bodies, see ThinWallPlan
 };
 
 /// Refinement of one body for reasons other than thin walls.
 struct BodyCells {
-  NarrowPatches narrow;  ///< dropped where the body has thin walls, which then choose the cells alone
+  NarrowPatches narrow;  ///< ignored for bodies with thin walls, which alone determine their cells
   NarrowPatches asked;   ///< MesherOptions::refinement_regions
 };
 

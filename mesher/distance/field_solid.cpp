@@ -14,7 +14,7 @@ namespace {
 constexpr int coordinate_bits = 19;
 
 using Corner = std::array<int, 3>;
-/// An edge of the tets: from a corner to the one that is farther by 1 along some axes.
+/// An edge of the tets: from a corner to another one, 1 farther along one or more axes.
 using Edge = std::uint64_t;
 
 Edge edge_number(const Corner& corner, int axes) {
@@ -27,17 +27,17 @@ Corner moved(const Corner& corner, int axes) {
   return {corner[0] + (axes & 1), corner[1] + (axes >> 1 & 1), corner[2] + (axes >> 2)};
 }
 
-/// Corners of a voxel by the axes along which they are farther: those of the six tets.
+/// The corners of the six tets of a voxel. Bit `axis` of a corner: it is at the upper end along that axis.
 constexpr std::array<std::array<int, 4>, 6> kuhn_tets{
     {{0, 1, 3, 7}, {0, 1, 5, 7}, {0, 2, 3, 7}, {0, 2, 6, 7}, {0, 4, 5, 7}, {0, 4, 6, 7}}};
 
-/// The middle of an edge between two corners of a voxel, doubled.
+/// Twice the midpoint of the edge between two corners of a voxel.
 Vec3 doubled_middle(int a, int b) {
   const auto coordinate = [&](int axis) { return static_cast<double>((a >> axis & 1) + (b >> axis & 1)); };
   return {coordinate(0), coordinate(1), coordinate(2)};
 }
 
-/// Appends the triangles in which the surface cuts a tet, as three edges each, wound outwards.
+/// Appends the triangles in which the surface cuts a tet, as the three edges that are cut, oriented outwards.
 void cut_tet(const std::array<int, 4>& tet, const std::array<bool, 8>& inside, const Corner& low,
              std::vector<Edge>& out) {
   std::array<int, 4> in{}, beyond{};
@@ -50,7 +50,7 @@ void cut_tet(const std::array<int, 4>& tet, const std::array<bool, 8>& inside, c
     const Vec3 outwards = doubled_middle(beyond[0], beyond[0]) - doubled_middle(in[0], in[0]);
     if ((b - a).cross(c - a).dot(outwards) < 0) std::swap(t[1], t[2]);
     for (const auto& [from, to] : t) {
-      const int start = from & to;  // of two corners of a tet one is farther along all axes than the other
+      const int start = from & to;  // the bits of one corner include those of the other
       out.push_back(edge_number(moved(low, start), from ^ to));
     }
   };
@@ -61,7 +61,7 @@ void cut_tet(const std::array<int, 4>& tet, const std::array<bool, 8>& inside, c
   add({{{in[0], beyond[0]}, {in[1], beyond[1]}, {in[1], beyond[0]}}});
 }
 
-/// Where the surface of the region cuts an edge, input units.
+/// The point at which the surface of the region cuts an edge, input units.
 Vec3 cut_of(FieldSampler& sampler, const GridFrame& voxels, Edge edge) {
   constexpr Edge mask = (Edge{1} << coordinate_bits) - 1;
   const int axes = static_cast<int>(edge & 7);

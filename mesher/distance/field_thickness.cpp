@@ -12,12 +12,12 @@ namespace tetwright {
 
 namespace {
 
-/// A cell of 1/2^depth voxels that holds a sheet.
+/// A cell of 1/2^depth voxels that contains part of a sheet.
 struct SheetCell {
   int depth;
   MortonKey key;  ///< in cells of its own size
   RegionIndex region;
-  bool too_thin;  ///< and not split
+  bool too_thin;  ///< not resolved and not split
   bool operator<(const SheetCell& o) const { return depth != o.depth ? depth < o.depth : key < o.key; }
 };
 

@@ -8,8 +8,8 @@
 
 namespace tetwright {
 
-/// Sheets between two level sets (layers, gaps between nested surfaces) thinner than one and a half cells.
-/// They would tear in a lattice of voxels, although the level sets represent them exactly.
+/// Sheets between two level sets (layers, gaps between nested surfaces) thinner than one and a half cells. A
+/// lattice of voxel-sized cells would tear them, although the level sets represent them exactly.
 struct ThinSheets {
   RefinementRegions finer;
   std::vector<ThinPart> too_thin;  ///< thinner than one and a half of the smallest possible cells

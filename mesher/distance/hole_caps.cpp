@@ -115,8 +115,8 @@ class CapFinder {
                                       });
   }
 
-  /// The crossing of the edge from a to b, as a fraction of it; kept away from both ends, so that no cap
-  /// triangle has zero area.
+  /// The crossing of the edge from a to b, as a fraction of the edge. Kept away from both ends, so that no
+  /// cap triangle has zero area.
   static double crossing(const GridReading& a, const GridReading& b) {
     const double share = needs_cap(a.distance, b.distance)
                              ? (DistanceTuning::Caps::inside_winding - a.winding) / (b.winding - a.winding)
@@ -169,7 +169,7 @@ class CapFinder {
 
   const std::function<GridReading(int, int, int)>& read_;
   Progress* progress_;
-  // Only looked up, never iterated in their own order.
+  // Only for lookups: their iteration order is unspecified.
   std::unordered_map<MortonKey, GridReading> readings_;
   std::unordered_set<MortonKey> cells_;
   std::vector<GridEdge> edges_;

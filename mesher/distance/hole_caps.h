@@ -33,9 +33,9 @@ inline bool needs_cap(double distance, double next_distance) {
          std::abs(distance) + std::abs(next_distance) > 1 + DistanceTuning::Caps::distance_error;
 }
 
-/// Caps the holes of a surface: where the winding number passes inside_winding without a surface. Starts from
-/// the grid edges in `seeds` (those within the band) and follows each cap to its end. A cap crosses every
-/// edge that needs one, so the distances from surface and caps at its ends add up to at most one voxel.
+/// Caps the holes of a surface, where the winding number crosses inside_winding without a surface. Starts
+/// from the grid edges in `seeds`, which lie within the band, and follows each cap to its end. A cap crosses
+/// every edge that needs one, so the distances from surface and caps at its ends add up to at most one voxel.
 ///
 /// Caps are surface nets (Gibson 1998) in grid coordinates: a point in each cell at the mean of the crossings
 /// of its edges, and a quadrilateral around each edge that needs a cap, oriented outwards. Memory and time

@@ -35,7 +35,7 @@ std::shared_ptr<const LevelSet> LevelSet::with_walls(const LevelSet& level_set,
                                                      std::shared_ptr<const ThinWalls> walls) {
   DistanceGrid grid = level_set.grid_->copy();
   const std::vector<MortonKey> voxels = walls->covered();
-  // At a grid point the surrounding voxel with the smallest cells decides.
+  // At a grid point, the surrounding voxel with the smallest cells determines the depth.
   struct Corner {
     MortonKey point;
     int depth;

@@ -36,7 +36,7 @@ class LevelSet {
   /// \throws Interrupted
   static std::shared_ptr<const LevelSet> at_depth(const RepairedSurface& surface, double depth,
                                                   const GridFrame& frame, Progress* progress);
-  /// As above, reusing the result of of_surface() as `boundary`.
+  /// As above, with the result of of_surface() as `boundary`.
   static std::shared_ptr<const LevelSet> at_depth(const RepairedSurface& surface, const LevelSet& boundary,
                                                   double depth, const GridFrame& frame, Progress* progress);
 

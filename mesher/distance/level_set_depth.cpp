@@ -23,7 +23,7 @@ struct GridBox {
 };
 
 /// Finds the grid points around the surface at a depth. Distances are 1-Lipschitz, so a box whose middle is
-/// too far from that depth has none.
+/// too far from that depth contains no such point.
 class DepthFinder {
  public:
   DepthFinder(const SurfaceTree& surface, const LevelSet& boundary, double depth)
@@ -63,7 +63,7 @@ class DepthFinder {
   }
 
  private:
-  /// Calls `use(part)` for those of a box's eight parts that may contain part of the band.
+  /// Calls `use(octant)` for each octant of a box that may contain part of the band.
   template <class Use>
   void for_each_part(const GridBox& box, LevelSetSampler& sampler, Use&& use) const {
     for (int k = 0; k < 8; ++k) {
@@ -75,7 +75,7 @@ class DepthFinder {
       part.distance = surface_.distance(part.middle(), std::min(farthest, known));
       if (std::abs(part.distance - depth_) >= level_set_band + part.reach()) continue;
       if (part.distance > part.reach() && depth_ + part.distance >= level_set_band + part.reach()) {
-        // Completely on one side, and without any of the band if that is the outside.
+        // Lies completely on one side, and contains no part of the band if that side is the outside.
         const auto& [x, y, z] = part.lowest;
         if (sampler.at_node(x, y, z) > 0) continue;
       }

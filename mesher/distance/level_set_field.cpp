@@ -96,8 +96,8 @@ class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
     find_carving_maxima();
   }
 
-  /// For each of the outside's terms, finds the maximum from that term on; ties go to the first. Every region
-  /// shares its last terms with the outside, see LevelSetField::own_terms().
+  /// For each of the outside's terms, finds the largest of this and the following terms; ties go to the
+  /// first. Every region shares its last terms with the outside, see LevelSetField::own_terms().
   void find_carving_maxima() {
     const std::vector<RegionTerm>& terms = field.terms(outside_region);
     for (std::size_t i = terms.size(); i-- > 0;) {
@@ -195,7 +195,7 @@ class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
   std::vector<std::unique_ptr<LevelSetSampler>> readers;
   std::vector<double> distances;
   std::vector<Vec3> gradients;
-  /// The largest of the outside's terms from a given one on.
+  /// The largest of the outside's terms starting from a given one.
   struct Carving {
     double value;
     const RegionTerm* term;
@@ -272,7 +272,7 @@ std::vector<MortonKey> LevelSetField::interface_voxels() const {
   }
   if (level_sets_.size() == 1) return keys;
   parallel_sort_unique(keys);
-  // Where a later material covers an earlier one's surface there is no interface.
+  // The surface of a material has no interface where a later material covers it.
   return parallel_collect<MortonKey>(
       0, keys.size(), DistanceGrains::cells_of_regions,
       [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {

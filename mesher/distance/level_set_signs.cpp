@@ -64,7 +64,7 @@ std::vector<GridEdge> edges_to_cap(const DistanceGrid& grid) {
                                     });
 }
 
-/// Merges the caps into the signed distances, and their band into the band.
+/// Merges the distances from the caps into the signed distances, and their band into the band.
 void add_caps(DistanceGrid& grid, const TriangleMesh& caps, const NodeWinding& winding, Progress* progress) {
   const DistanceGrid cap_grid = DistanceGrid::unsigned_distances(caps.points, caps.triangles, progress);
   const std::vector<GridLeaf<const float>> sources = cap_grid.leaves();
@@ -106,7 +106,7 @@ double NodeWinding::at(int x, int y, int z) const {
   const std::array<int, 3> p{x, y, z};
   bool in_box = true;
   for (int a = 0; a < 3; ++a) in_box &= p[a] >= low_[a] && p[a] <= high_[a];
-  constexpr double outside = 0.5;  // by the smallest margin
+  constexpr double outside = 0.5;  // just below inside_winding
   static_assert(outside < DistanceTuning::Caps::inside_winding);
   return in_box ? winding : std::min(winding, outside);
 }

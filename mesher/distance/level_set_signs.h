@@ -35,8 +35,8 @@ class NodeWinding {
   std::array<int, 3> low_, high_;  ///< the grid points of the bounding box
 };
 
-/// Adds signs to the unsigned distances of the band. Where the inside ends without a surface, adds caps, and
-/// the distances become those from surface and caps together, so that there is an interface wherever the sign
+/// Adds signs to the unsigned distances of the band. Adds caps where the inside ends without a surface; the
+/// distances then refer to surface and caps together, so that there is an interface wherever the sign
 /// changes.
 /// \return the caps, in grid coordinates
 /// \throws Interrupted

@@ -19,12 +19,12 @@ using WallCells = DistanceTuning::WallCells;
 using Side = SurfaceDistance::Side;
 using Voxel = std::array<int, 3>;
 
-/// Cells whose middle is within half a diagonal of a plane, for each squared cell of the plane.
+/// Number of cells whose middle is within half a diagonal of a plane, per squared cell of the plane's area.
 constexpr double cells_per_area = 2 * half_cube_diagonal;
 
 std::array<int, 3> sum(const Voxel& a, int dx, int dy, int dz) { return {a[0] + dx, a[1] + dy, a[2] + dz}; }
 
-/// The voxels that may hold a surface, by the distances of their corners.
+/// The voxels that may contain a surface, judging by the distances at their corners.
 std::vector<MortonKey> surface_voxels(const LevelSet& level_set) {
   const std::vector<GridLeaf<const float>> leaves = level_set.grid().leaves();
   std::vector<MortonKey> keys = parallel_collect<MortonKey>(
@@ -45,8 +45,8 @@ std::vector<MortonKey> surface_voxels(const LevelSet& level_set) {
   return keys;
 }
 
-/// False if the distances on voxels imply that the surface in a voxel, if any, has nothing else within half
-/// of `limit` on either side.
+/// False if the distances on voxels rule out any other surface within half of `limit` on either side of the
+/// surface in a voxel.
 bool may_be_thin(LevelSetSampler& sampler, const Vec3& middle, double limit) {
   if (limit > level_set_band) return true;
   Vec3 slope;
@@ -66,7 +66,7 @@ Vec3 middle_of(const Voxel& cell, int depth) {
 
 /// Walls and gaps near a cell of 1/2^depth voxels.
 struct CellWalls {
-  bool near = false;     ///< the surface comes near the cell
+  bool near = false;     ///< the surface is near the cell
   bool thin = false;     ///< something there is below its limit
   bool gap = false;      ///< the thin part is a gap, not a wall
   double thickness = 0;  ///< of the thinnest
@@ -93,8 +93,8 @@ Voxel child(const Voxel& cell, int k) {
   return {2 * cell[0] + (k & 1), 2 * cell[1] + (k >> 1 & 1), 2 * cell[2] + (k >> 2)};
 }
 
-/// As measure_nearest(), and where nothing is thin there, also at the eighths of the cell: near rims and
-/// corners it holds several faces.
+/// As measure_nearest(). If nothing is thin there, also measures at the eight octants of the cell, which
+/// contains several faces near rims and corners.
 CellWalls measure(const SurfaceDistance& surface, const Voxel& cell, int depth, double facing,
                   const SideLimits& limits) {
   CellWalls found = measure_nearest(surface, cell, depth, facing, limits);
@@ -104,8 +104,8 @@ CellWalls measure(const SurfaceDistance& surface, const Voxel& cell, int depth, 
   return found;
 }
 
-/// Calls `visit(cell, depth, walls, split)` for the cells of a voxel that hold a surface, each split cell
-/// before its parts. Cells are split as far as they are thin and `max_depth` allows.
+/// Calls `visit(cell, depth, walls, split)` for the cells of a voxel that contain a surface, each split cell
+/// before its parts. Cells are split while they are thin and above `max_depth`.
 template <class Visit>
 void descend(const SurfaceDistance& surface, const Voxel& cell, int depth, int max_depth,
              const Visit& visit) {
@@ -147,7 +147,8 @@ int covered_around(const ThinWalls::Limits& limits) {
 
 /// Puts thin voxels with overlapping covered neighbourhoods into one region.
 void find_regions(LocalThickness& measured) {
-  // Closing and omitting on purpose changes distances far around: all at one depth, so that there is no jump.
+  // Closing and omitting on purpose changes distances in a wide neighbourhood. Use one depth everywhere, so
+  // that distances do not jump.
   if (covered_around(measured.limits) > 1) {
     measured.region.assign(measured.voxels.size(), 0);
     measured.regions.resize(1);
@@ -195,7 +196,8 @@ void count_cells(LocalThickness& measured) {
                   [&](const Voxel& cell, int depth, const CellWalls& walls, bool thin) {
                     int needed = depth + thin;
                     if (thin && depth == WallCells::counted_depth) {
-                      // Tips of wedges are thin in cells of any size: only parallel walls go deeper.
+                      // Tips of wedges are thin in cells of any size, so only parallel walls are refined
+                      // further.
                       const double side = std::ldexp(1, -depth);
                       const CellWalls parallel =
                           measure_nearest(*measured.surface, cell, depth, Walls::facing_to_report,
@@ -210,7 +212,7 @@ void count_cells(LocalThickness& measured) {
                     out.push_back({measured.region[v], depth, needed, walls.gap});
                   });
       });
-  // For each region, the number of cells that ask for each depth or more.
+  // For each region, the number of cells that need each depth or more.
   std::vector<std::array<std::size_t, max_wall_refinement + 1>> asking(measured.regions.size());
   for (const Cell& c : cells)
     for (int d = c.depth + 1; d <= c.needed; ++d) ++asking[c.region][d];
@@ -224,7 +226,7 @@ void count_cells(LocalThickness& measured) {
   };
   for (Cell c : cells) {
     c.needed = worth(c);
-    if (c.depth > c.needed) continue;  // below a cell that is not split
+    if (c.depth > c.needed) continue;  // inside a cell that is not split
     LocalThickness::Region& region = measured.regions[c.region];
     const double tets = c.gap ? WallCells::tets_per_gap_cell : WallCells::tets_per_wall_cell;
     region.needed = std::max(region.needed, c.needed);
@@ -369,7 +371,7 @@ ThinWallPlan plan_thin_walls(const LocalThickness& measured) {
                     if (thin && depth < max_depth) found[task].cells.push_back({depth, morton_encode(cell)});
                     if (thin && depth < max_depth) return;
                     const double side = std::ldexp(1, -depth);
-                    // Area of one side: where the wall is thinner than a cell, both sides are in it.
+                    // Area of one side. If the wall is thinner than a cell, both sides are in the cell.
                     const auto area_of = [&](double thickness) {
                       return side * side / cells_per_area / (1 + std::min(1.0, thickness / side));
                     };
@@ -388,7 +390,8 @@ ThinWallPlan plan_thin_walls(const LocalThickness& measured) {
                     if (wall < Walls::exact_below) {
                       const double kept = std::max(wall, measured.limits.min_thickness),
                                    shown = std::max(kept, min_shown);
-                      // At most as many as the dense mesh has there: a fold may have no thickness at all.
+                      // At most the number of tets that the dense mesh has there, since a fold may have no
+                      // thickness at all.
                       const auto filling = [&](double thickness) {
                         return std::min(
                             WallCells::filling_tets_per_area * area_of(wall) / (thickness * thickness),
@@ -460,7 +463,7 @@ ThinWallPlan plan_thin_walls(const LocalThickness& measured) {
     w.area += c.area;
     if (c.thickness < w.thickness) w.thickness = c.thickness, w.place = c.place;
   }
-  // Areas smaller than a finest cell are noise from surfaces that merely come close.
+  // Areas smaller than a finest cell are noise from surfaces that merely pass close to each other.
   std::erase_if(plan.changed, [](const ChangedWall& w) { return w.area < w.min_shown * w.min_shown; });
   plan.walls = walls;
   return plan;

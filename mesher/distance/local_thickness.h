@@ -36,7 +36,7 @@ struct LocalThickness {
   std::vector<MortonKey> exact;  ///< voxels whose distances come from the triangles regardless of thickness
 };
 
-/// Measures a surface. Takes little time where nothing is thin.
+/// Measures a surface. Fast where nothing is thin.
 /// \param level_set of the surface
 /// \param limits voxels
 /// \param exact voxels whose cells are smaller for other reasons, ascending
@@ -45,15 +45,15 @@ LocalThickness measure_local_thickness(const RepairedSurface& surface, const Lev
                                        const GridFrame& frame, const ThinWalls::Limits& limits,
                                        std::vector<MortonKey> exact, Progress* progress);
 
-/// Gives regions whose cells are split for other reasons cells of that size throughout, small regions
-/// included.
+/// If cells of a region are split for other reasons, gives the whole region cells of that size. Applies to
+/// small regions too.
 void follow_cells(LocalThickness& measured, const RefinementRegions& finer);
 
 /// Limits of the refinement of thin walls.
 struct RefinementBudget {
   int max_depth = default_wall_refinement;
   int max_possible = max_wall_refinement;  ///< allowed by the lattice
-  /// Go deeper than max_depth, up to max_wall_refinement, where that adds at most `base_tets`.
+  /// Exceed max_depth, up to max_wall_refinement, in regions where that adds at most `base_tets`.
   bool deeper_where_cheap = true;
   double base_tets = 0;  ///< dense tets without refinement
   double max_tets = 0;   ///< limit for all regions together
@@ -62,7 +62,7 @@ struct RefinementBudget {
 /// Chooses the depth of each region as a whole, the cheapest regions first, within the budget.
 void choose_depths(const std::vector<LocalThickness*>& all_measured, const RefinementBudget& budget);
 
-/// A region where walls are thickened, or gaps closed.
+/// A region where walls are thickened or omitted, or gaps closed.
 struct ChangedWall {
   bool gap = false;
   double thickness = 0;       ///< smallest, voxels
@@ -76,14 +76,14 @@ struct ThinWallPlan {
   std::shared_ptr<const ThinWalls> walls;  ///< null if nothing is thin
   RefinementRegions finer;
   std::vector<ChangedWall> changed;
-  /// Approximate number of well-shaped tets that fill the walls with parallel sides; fewer would have to be
-  /// flat.
+  /// Approximate number of well-shaped tets that fill the walls with parallel sides. Fewer tets would have to
+  /// be flat.
   double filling_tets = 0;
-  /// The number if walls stay thickened.
+  /// As above, for walls that stay thickened.
   double filling_tets_thickened = 0;
 };
 
-/// The cells that the chosen depths require, and the distances that belong to them.
+/// The cells that the chosen depths require, and the corresponding distances.
 ThinWallPlan plan_thin_walls(const LocalThickness& measured);
 
 /// The union of both.

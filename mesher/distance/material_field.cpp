@@ -33,7 +33,7 @@ double FieldSampler::between(RegionIndex a, RegionIndex b, const Vec3& point, Ve
 bool FieldSampler::project(const RegionSet& regions, Vec3& point, unsigned held_axes) {
   const double smallest_slope = DistanceTuning::Projection::min_slope_share * min_slope_ * min_slope_;
   const double damping = DistanceTuning::Projection::damping_share * min_slope_ * min_slope_;
-  // The accuracy of distances is that of voxels; small cells need a small fraction of their own size.
+  // The accuracy of distances depends on the voxel size. Small cells need a small fraction of their own size.
   const double enough = std::min(tolerance::on_interface * per_voxel_, tolerance::on_interface_of_cell);
   const int equations = regions.size() - 1;
   if (equations < 1) return false;

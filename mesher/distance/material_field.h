@@ -57,14 +57,15 @@ class FieldSampler {
   FieldSampler& operator=(const FieldSampler&) = delete;
 
   virtual NearestRegion nearest(const Vec3& point) = 0;
-  /// At a voxel corner, given in voxels.
+  /// The nearest region at a voxel corner, given in voxels.
   virtual NearestRegion nearest_at_voxel(int x, int y, int z) = 0;
   /// Signed distances of `regions`, lattice units.
   virtual void values(const Vec3& point, std::span<const RegionIndex> regions, float* out) = 0;
   virtual void values_at_voxel(int x, int y, int z, std::span<const RegionIndex> regions, float* out) = 0;
   /// The two regions of the smallest distances, ascending; nothing if only one is within the band.
   virtual std::optional<RegionSet> two_nearest(const Vec3& point) = 0;
-  /// The sheets of the field, with this sampler's cache; null if the field does not know sheets.
+  /// A sampler for the sheets of the field that uses this sampler's cache; null if the field cannot find
+  /// sheets.
   virtual SheetSampler* sheets() { return nullptr; }
 
   /// Half the signed distance of region a minus that of region b: negative in a, zero on their interface,
@@ -101,15 +102,15 @@ class WallChanges {
   virtual std::shared_ptr<const MaterialField> with_true_walls() const = 0;
   /// True where distances may be changed.
   virtual bool contains(const Vec3& point) const = 0;
-  /// The thickness, lattice units, of a thin wall with parallel sides that has a side near the point; else
-  /// infinity.
+  /// The thickness, lattice units, of the thin wall with parallel sides that has a side near the point;
+  /// infinity if there is none.
   virtual double parallel_thickness(const Vec3& point) const = 0;
 
  protected:
   ~WallChanges() = default;
 };
 
-/// The segmented volume that a field is made of. Its regions are cut off at the frame's box, the volume's
+/// The segmented volume from which a field is made. Its regions are cut off at the frame's box, the volume's
 /// border; the distances themselves ignore the box. All functions may be called concurrently.
 class VoxelVolume {
  public:
@@ -144,7 +145,7 @@ class MaterialField : public ReferenceSurface {
   virtual std::vector<LeafOrigin> band_leaves(RegionIndex region) const = 0;
   /// The thin walls and gaps where distances are changed; null if there are none.
   virtual const WallChanges* wall_changes() const { return nullptr; }
-  /// The volume that the field is made of; null for surfaces.
+  /// The volume from which the field is made; null for surfaces.
   virtual const VoxelVolume* volume() const { return nullptr; }
 
   const GridFrame& voxels() const { return voxels_; }

@@ -7,7 +7,7 @@
 namespace tetwright {
 
 /// Half-width of the narrow band of signed distances, in voxels. Cut lattice edges around finest cells are at
-/// most 2.6 cells long, so the distances at both of their ends are true.
+/// most 2.6 cells long, so the distances at both ends are exact.
 inline constexpr int level_set_band = 3;
 
 /// Lowest grid point of a leaf. Distances are stored in OpenVDB's leaves of 8 x 8 x 8 grid points.

@@ -55,7 +55,7 @@ std::vector<RefinementRegion> narrow_places(const RepairedSurface& surface, cons
             if (corner_tree.nearest_of(at, width / DistanceTuning::NarrowPatches::corner_share,
                                        [](const auto&) { return true; }))
               continue;
-            // Creases that touch there form a corner, too.
+            // Creases that touch there form a corner as well.
             if (!(width > 0)) continue;
             out.push_back(
                 {at, std::min(max_depth, static_cast<int>(std::ceil(std::log2(
@@ -65,8 +65,8 @@ std::vector<RefinementRegion> narrow_places(const RepairedSurface& surface, cons
       });
 }
 
-/// Halves the cells at the given points (voxels) and around them, reducing the depth until `max_tets`
-/// suffice.
+/// Halves the cells at and around the given points (voxels), reducing the depth until at most `max_tets` are
+/// added.
 NarrowPatches halve_cells(const std::vector<RefinementRegion>& places, int max_depth, double max_tets) {
   for (; max_depth > 0; --max_depth) {
     std::vector<Split> splits;
@@ -91,7 +91,7 @@ NarrowPatches halve_cells(const std::vector<RefinementRegion>& places, int max_d
     finer.cells.resize(static_cast<std::size_t>(finer.refinement) + 2);
     for (const Split& s : splits) {
       finer.cells[static_cast<std::size_t>(finer.refinement - s.depth)].push_back(s.key);
-      // That requires cells of two voxels to be split.
+      // Halving a voxel-sized cell requires its parent of two voxels to be split.
       if (s.depth > 0) continue;
       finer.cells.back().push_back(s.key >> 3);
       narrow.voxels.push_back(s.key);

@@ -18,9 +18,9 @@ struct NarrowPatches {
 };
 
 /// Finds where a patch is too narrow for the cells to resolve both its creases, and halves cells there until
-/// two span its width. Near a corner, where creases meet, a patch ends and is not narrow.
-/// \param max_depth halvings at most
-/// \param max_tets dense tets that this may add, approximately; if it adds more, the depth is reduced
+/// two span its width. Creases that converge at a corner do not count as narrow.
+/// \param max_depth max number of halvings
+/// \param max_tets approximate max number of dense tets to add; if it is exceeded, the depth is reduced
 ///   everywhere
 NarrowPatches find_narrow_patches(const RepairedSurface& surface, const SurfacePatches& patches,
                                   const GridFrame& frame, int max_depth, double max_tets);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// OpenVDB's conversions from and to meshes. Their templates take by far the longest to compile.
+// OpenVDB's conversions from and to meshes, in a file of their own because their templates take long to
+// compile.
 #include <openvdb/tools/MeshToVolume.h>
 #include <openvdb/tools/SignedFloodFill.h>
 #include <openvdb/tools/VolumeToMesh.h>
@@ -14,7 +15,7 @@ namespace tetwright {
 
 namespace {
 
-/// Presents triangles to OpenVDB with points in doubles, where its own adapter takes floats.
+/// Presents triangles to OpenVDB with points in double precision. OpenVDB's own adapter takes floats.
 struct MeshAdapter {
   std::span<const Vec3> points;
   std::span<const Triangle> triangles;
@@ -82,7 +83,7 @@ DistanceGrid DistanceGrid::unsigned_distances(std::span<const Vec3> points,
       interrupter, MeshAdapter{points, triangles}, *openvdb::math::Transform::createLinearTransform(1.0),
       static_cast<float>(level_set_band), static_cast<float>(level_set_band),
       openvdb::tools::UNSIGNED_DISTANCE_FIELD);
-  // An interrupted conversion returns whatever it has so far.
+  // An interrupted conversion returns an incomplete grid.
   if (progress) progress->throw_if_stopped();
   return DistanceGrid(std::make_unique<Impl>(std::move(grid)));
 }
@@ -99,7 +100,7 @@ void DistanceGrid::fill_tiles_outside_band(double band) {
 }
 
 TriangleMesh DistanceGrid::zero_surface() const try {
-  // In index coordinates, because OpenVDB's points are floats; shares the tree.
+  // Convert in index coordinates, because OpenVDB's points are floats. The copy shares the tree.
   const openvdb::FloatGrid::Ptr local = impl_->grid->copy();
   local->setGridClass(openvdb::GRID_LEVEL_SET);
   local->setTransform(openvdb::math::Transform::createLinearTransform(1.0));

@@ -22,7 +22,7 @@ namespace {
 
 using Tree = openvdb::FloatTree;
 using Leaf = Tree::LeafNodeType;
-/// An accessor that is not registered with its tree: cheap to construct, for trees that no longer change.
+/// An accessor that is not registered with its tree: cheap to construct, for immutable trees.
 using Accessor = openvdb::tree::ValueAccessor<const Tree, false>;
 
 static_assert(leaf_side == Leaf::DIM && leaf_points == Leaf::SIZE && leaf_points % 64 == 0);

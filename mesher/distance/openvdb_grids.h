@@ -28,7 +28,7 @@ struct GridPlacement {
   Eigen::Matrix3d directions;
 };
 
-// Everything the project uses of OpenVDB, without its headers.
+// All uses of OpenVDB in the project, without OpenVDB's headers.
 
 /// View of the 8 x 8 x 8 grid points of a leaf of a DistanceGrid. `Value` is float or const float. The grid
 /// point at (x, y, z) from the origin has the number (x * leaf_side + y) * leaf_side + z.
@@ -53,8 +53,8 @@ struct GridLeaf {
   }
 };
 
-/// Distances at grid points, stored as an OpenVDB grid of floats: leaves where there is something to store,
-/// one value for whole tiles elsewhere. Active grid points are those of the narrow band.
+/// Distances at grid points, stored as an OpenVDB grid of floats: leaves near the surface, one value for
+/// whole tiles elsewhere. The active grid points are those in the narrow band.
 ///
 /// Const functions may be called concurrently, and so may writes to different leaves.
 class DistanceGrid {
@@ -116,8 +116,9 @@ class DistanceGrid {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Reads a DistanceGrid that does not change meanwhile. Caches the last leaf read, so consecutive nearby
-/// points are fast. Not thread-safe; any number of readers of one grid may be used concurrently.
+/// Reads a DistanceGrid, which must not change while the reader exists. Caches the last leaf read, so
+/// consecutive nearby points are fast. Not thread-safe; any number of readers of one grid may be used
+/// concurrently.
 class DistanceGridReader {
  public:
   explicit DistanceGridReader(const DistanceGrid& grid);
@@ -142,14 +143,14 @@ struct NamedGrid {
   DistanceGrid grid;
 };
 
-/// The bytes of a .vdb file of level sets whose grid points lie as `frame` says. OpenVDB gives it a random
-/// identifier.
+/// The bytes of a .vdb file of level sets whose grid points are positioned by `frame`. OpenVDB gives it a
+/// random identifier.
 /// \throws std::domain_error if the frame's cells are smaller than OpenVDB's transforms allow
 std::string level_sets_to_vdb(std::span<const NamedGrid> grids, const GridFrame& frame);
 
 /// The labels of a stored grid of int32 or int64.
 /// \param stored must hold its bytes, which are consumed
-/// \throws InputError as read_label_grid() of vdb_files.h
+/// \throws InputError as read_label_grid()
 LabelVolume labels_from_vdb(VdbGrid& stored, std::size_t max_voxels, const std::string& file);
 
 }  // namespace tetwright

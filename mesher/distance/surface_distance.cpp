@@ -59,8 +59,8 @@ std::optional<SurfacePlace> SurfaceDistance::nearest(const Vec3& point, double a
     if (squared > squared_distance * (1 + DistanceTuning::Triangles::tie)) return best;
     const double aligned = std::abs(normals_[t].dot(p - point));
     if (nearest < triangles_.size() && squared >= squared_distance * (1 - DistanceTuning::Triangles::tie)) {
-      // Among equally close triangles choose the one that faces the point most, then the first, so that the
-      // result does not depend on the order of the search.
+      // Among equally close triangles choose the one that faces the point most directly, then the first, so
+      // that the result does not depend on the search order.
       if (aligned < alignment || (aligned == alignment && t > nearest)) return best;
     }
     nearest = t;

@@ -19,21 +19,21 @@ struct SurfacePlace {
 };
 
 /// Exact distances from the triangles of a surface, its exact inside, and the distance from one wall to the
-/// next. Unlike distances on voxels these resolve walls and gaps of any thinness.
+/// next. Unlike distances on voxels, these resolve walls and gaps of any thickness.
 ///
 /// Distances ignore triangles without area. Immutable after construction; all functions may be called
 /// concurrently. Built in O(n log n); about 200 bytes per triangle.
 class SurfaceDistance {
  public:
-  /// All coordinates and results are in one unit.
+  /// Coordinates and results may be in any common unit.
   /// \param closed number of triangles of closed components, which come first
   /// \param caps caps of the surface's holes, which count for distances only
   /// \param intersects_itself parts of the surface lie inside others and are not walls
   SurfaceDistance(std::span<const Vec3> points, std::span<const Triangle> triangles, std::size_t closed,
                   const TriangleMesh& caps, bool intersects_itself);
 
-  /// The closest point within `at_most`; among equally close ones that on the triangle that faces `point`
-  /// most.
+  /// The closest point within `at_most`. Among equally close points, the one whose triangle faces `point`
+  /// most directly.
   std::optional<SurfacePlace> nearest(const Vec3& point, double at_most) const;
 
   /// True where the winding numbers of the closed components (exact) and of the open ones (by a tree) add up
@@ -48,7 +48,7 @@ class SurfaceDistance {
   ///   neither the flanks of a convex edge nor noise count
   double thickness(const SurfacePlace& place, Side side, double facing, double at_most) const;
 
-  /// The closest point, nearer than `below`, on walls that face `normal`, see thickness().
+  /// The closest point, within `below`, on walls that face `normal` (see thickness()).
   /// \param in_front only walls that `point` is in front of count
   std::optional<SurfacePlace> nearest_facing(const Vec3& point, const Vec3& normal, double facing,
                                              double below, bool in_front = false) const;

@@ -83,8 +83,8 @@ double ThinWalls::distance(const Vec3& point, int depth, bool thicken, Vec3& gra
   if (!place) return inside ? -level_set_band : level_set_band;
   const Vec3 away = point - place->point;
   const double size = away.norm();
-  // In front of a gap's mouth the closest point is on its rim, and nothing is closed. On the surface the
-  // direction to it is only rounding.
+  // In front of a gap's mouth the closest point is on its rim, and nothing is closed. For a point on the
+  // surface the direction to the closest point is rounding noise.
   const bool beside = size > tolerance::smallest_distance &&
                       std::abs(place->normal.dot(away)) < DistanceTuning::Walls::min_alignment * size;
   // Within a gap no point is farther from the nearest wall than half its width.
@@ -94,7 +94,7 @@ double ThinWalls::distance(const Vec3& point, int depth, bool thicken, Vec3& gra
     if (gap < close_below && (size <= 0.5 * min_shown || is_between(point, side.normal, close_below)))
       return std::max<double>(-level_set_band, -0.5 * (close_below - gap));
   }
-  // Farther away than lattice edges reach, values are not interpolated.
+  // Values farther away than lattice edges reach are not interpolated.
   const bool near = size < std::ldexp(level_set_band, -depth);
   const double sought = std::max(omit_below, thicken && near ? min_shown : 0.0);
   SurfacePlace side = *place;

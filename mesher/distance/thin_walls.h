@@ -17,7 +17,7 @@ namespace tetwright {
 
 /// Distances near the thin walls and gaps of one surface, in voxels.
 ///
-/// They come from the triangles, and the surface is changed so that nothing is thinner than a lattice can
+/// They are computed from the triangles, for a surface changed so that nothing is thinner than a lattice can
 /// resolve. With f the signed distance, T the thickness of the wall behind the closest surface point, G the
 /// width of the gap in front of it and `min_shown` the thinnest that the lattice resolves, the distance
 /// becomes
@@ -42,9 +42,9 @@ class ThinWalls {
   const SurfaceDistance& surface() const { return *surface_; }
   const Limits& limits() const { return limits_; }
 
-  /// Takes the distances in a voxel from here, and records how many times its cells are halved.
+  /// Covers a voxel: its distances come from this object. Records how many times its cells are halved.
   void cover(const std::array<int, 3>& voxel, int depth);
-  /// How many times cells are halved at a voxel, or -1 where distances do not come from here.
+  /// How many times cells are halved at a voxel; -1 if the voxel is not covered.
   int depth(const std::array<int, 3>& voxel) const {
     const auto block = blocks_.find(block_key(voxel));
     return block == blocks_.end() ? -1 : block->second[place_in_block(voxel)] - 1;
@@ -60,7 +60,7 @@ class ThinWalls {
   /// As above for the true surface, except in closed gaps and omitted walls.
   double true_distance(const Vec3& point, int depth, Vec3& gradient) const;
   /// The thickness of a wall with parallel sides that has a side within a voxel of the point and that cells
-  /// of this depth cannot resolve; else infinity.
+  /// of this depth cannot resolve; infinity if there is none.
   double parallel_thickness(const Vec3& point, int depth) const;
 
  private:

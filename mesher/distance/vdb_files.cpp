@@ -22,7 +22,7 @@ std::vector<VdbGrid> take_apart(const std::string& file) {
   }
 }
 
-/// The distances of a grid that is a level set, else nothing.
+/// The distances of a grid that is a level set; std::nullopt for other grids.
 std::optional<DistanceGrid> level_set_of(VdbGrid& grid, const std::string& file) {
   const bool without_kind = grid.kind == "unknown";
   if (grid.type != "float" || grid.alone.empty() || !(without_kind || grid.kind == "level set"))

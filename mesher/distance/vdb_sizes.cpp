@@ -22,13 +22,14 @@ namespace {
 
 using IndexPlace = DistanceGrid::IndexPlace;
 
-/// Two neighbouring voxels along one axis, and the weight of the second, 0 where it is not needed.
+/// The first of two neighbouring voxels along one axis, and the weight of the second, 0 if that is not
+/// needed.
 struct Between {
   int voxel;
   double share;
 };
 
-/// Nothing for nan or beyond the range of OpenVDB's coordinates.
+/// std::nullopt for NaN and for indices beyond the range of OpenVDB's coordinates.
 std::optional<Between> between(double index) {
   constexpr double farthest = 1 << 30;
   if (!(std::abs(index) < farthest)) return {};

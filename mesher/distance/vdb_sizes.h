@@ -8,15 +8,15 @@
 
 namespace tetwright {
 
-/// Reads edge lengths from a grid of floats or doubles in a .vdb file: the first name of size_names
-/// (common/sizes/size_source.h) that a grid has, else the only such grid not of the class "level set". Memory
+/// Reads edge lengths from a grid of floats or doubles in a .vdb file: the grid with the first possible name
+/// in size_names (tetwright/sizes.h), else the only such grid not of the class "level set". Memory
 /// grows with the file.
 ///
-/// Lengths are given at the centres of active voxels, positioned by the grid's transform, and trilinear
-/// between. at() returns nothing where a voxel that it needs is inactive, as it is beyond the outermost
-/// centres; a point within tolerance::coinciding_cells of a plane of centres needs only the voxels on that
-/// plane. Active tiles count as their voxels. for_each_value() visits each active voxel, and of an active
-/// tile its corners: the first and last voxels along each axis.
+/// Lengths are given at the centres of active voxels, positioned by the grid's transform, and interpolated
+/// trilinearly. at() returns std::nullopt if a voxel that it needs is inactive, as beyond the outermost
+/// centres. A point within tolerance::coinciding_cells of a plane of centres needs only the voxels on that
+/// plane. An active tile counts as its voxels. for_each_value() visits each active voxel outside tiles, and
+/// the eight corner voxels of each active tile.
 ///
 /// \throws InputError beginning with `file`: not a .vdb file, damaged or cut short, no such grid or several
 ///   (with a list), no active voxel, an active value that is not finite or not above 0 (with its position), a

@@ -20,7 +20,8 @@ constexpr std::uint32_t oldest_format = 222, newest_format = 224;
 constexpr std::string_view no_identifier = "00000000-0000-0000-0000-000000000000";
 /// Bits of a grid's compression.
 constexpr std::uint32_t zipped = 1, mask_compressed = 2, blosc = 4;
-/// Logarithms of the number of children of a node along each axis: below the root, one level further, leaves.
+/// Binary logarithms of the number of children of a node along each axis, for the levels from below the root
+/// to the leaves.
 constexpr std::array<int, 3> node_levels{5, 4, 3};
 constexpr std::string_view half_suffix = "_HalfFloat", usual_tree = "_5_4_3";
 
@@ -32,7 +33,7 @@ void require(bool condition) {
   if (!condition) damaged();
 }
 
-/// Reads sequentially from the start; throws where too little is left.
+/// Reads sequentially from the start; throws if too few bytes are left.
 class Cursor {
  public:
   explicit Cursor(std::string_view bytes) : bytes_(bytes) {}
@@ -125,7 +126,7 @@ class TreeWalk {
     }
   }
 
-  /// Reads the values of a node of which `active` are active.
+  /// Reads the values of a node with `active` active ones.
   void values(int level, std::size_t active) {
     // 0 to 2: only active values; the others are the background, its negative, or one value that is stored.
     // 3 to 5: likewise, but each of the others is one of two values, selected by a mask. 6: all values.
@@ -161,7 +162,7 @@ class TreeWalk {
     header.take(4);
     require(header.number<std::uint32_t>() == size);
     const auto block = header.number<std::uint32_t>();
-    require(block > 0 && block <= std::max<std::size_t>(size, 1));  // 1 where there is nothing
+    require(block > 0 && block <= std::max<std::size_t>(size, 1));  // 1 if there are no values
     require(header.number<std::uint32_t>() == packed.size());
   }
 
@@ -212,7 +213,7 @@ void put_text(std::string& bytes, std::string_view text) {
   bytes += text;
 }
 
-/// A file of one grid alone, without offsets to jump to.
+/// A file with a single grid, without offsets.
 std::string file_of_one(std::string_view header, std::string_view type, std::uint32_t compression,
                         bool as_half, std::string_view transform_bytes, std::string_view tree_bytes) {
   std::string bytes(header);
@@ -292,7 +293,8 @@ std::vector<VdbGrid> take_apart_vdb(std::string_view bytes) {
         cursor = ahead;
         continue;
       } catch (const std::runtime_error& e) {
-        // Grids of floats may be the level sets wanted. The fault of another grid is kept for its reader.
+        // Grids of floats may be level sets that the caller needs, so damage to one is an error. A fault in
+        // another grid is recorded and reported only if that grid is read.
         if (is_float || !has_offsets) throw;
         grid.fault = e.what();
       }

@@ -12,11 +12,11 @@ struct VdbGrid {
   std::string name;
   std::string type;  ///< type of the values: "float", "int32", "vec3s"
   std::string kind;  ///< class of the grid: "level set", "fog volume", "unknown"
-  /// For grids of floats, doubles, int32 and int64: the bytes of a .vdb file of this grid alone that OpenVDB
-  /// can read safely. Otherwise empty.
+  /// For grids of floats, doubles, int32 and int64: the bytes of a .vdb file with only this grid, which
+  /// OpenVDB can read safely. Otherwise empty.
   std::string alone;
-  /// For grids of doubles and integers: why `alone` is empty, as the rest of a sentence that begins with the
-  /// file's name.
+  /// For grids of doubles and integers: the reason why `alone` is empty, as the rest of a sentence that
+  /// begins with the file's name.
   std::string fault;
 };
 

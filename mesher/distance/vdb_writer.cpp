@@ -19,7 +19,7 @@ namespace tetwright {
 
 namespace {
 
-/// Position of OpenVDB's random identifier of 36 characters: after magic, three numbers of 32 bits and a
+/// Offset of OpenVDB's random identifier of 36 characters, after the magic number, three 32-bit numbers and a
 /// flag.
 constexpr std::size_t identifier_start = 21, identifier_length = 36;
 

@@ -23,8 +23,8 @@ struct LevelSetSource {
   std::function<void(const LeafOrigin&, std::span<float, leaf_points>)> distances;
 };
 
-/// Writes a .vdb file of level sets, in input units, completely or not at all (see files.h). The bytes
-/// do not depend on the number of threads.
+/// Writes a .vdb file of level sets in input units. The file appears complete or not at all (see files.h).
+/// The bytes do not depend on the number of threads.
 /// \param band_cells finest cells, above 0: distances are true up to this size and clamped to it
 /// \param files if given, the file appears when these are committed
 /// \throws OutputError if the file cannot be written, or the frame's cells are smaller than OpenVDB's

@@ -10,7 +10,7 @@
 
 namespace tetwright {
 
-/// Cells that the octree must split beyond what the interface alone requires.
+/// Cells that the octree must split in addition to those that the interface requires.
 struct RefinementRegions {
   int refinement = 0;  ///< levels below a voxel
   /// The cells to be split: one ascending list for each level of a lattice refined that far, and possibly one
@@ -19,7 +19,7 @@ struct RefinementRegions {
   int coarsest_interface_level = 2;  ///< see OctreeOptions
 };
 
-/// A region that is somewhere too thin for its cells.
+/// A region that is too thin for its cells somewhere.
 struct ThinPart {
   RegionIndex region;
   std::size_t places;  ///< number of voxels, or of finest cells for a sheet between two level sets

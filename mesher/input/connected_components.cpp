@@ -14,8 +14,8 @@ namespace tetwright {
 
 namespace {
 
-/// The islands of a volume, made of runs: consecutive equal voxels along the first axis. Runs are numbered in
-/// the order of their voxels, so that the smallest run of an island has its lowest voxel.
+/// The islands of a volume, as sets of runs: consecutive equal voxels along the first axis. Runs are numbered
+/// in the order of their voxels, so the first run of an island contains its lowest voxel.
 class Islands {
  public:
   Islands(std::vector<RegionIndex>& regions, const std::array<int, 3>& size, const Progress* progress)
@@ -32,7 +32,7 @@ class Islands {
   std::size_t islands() const { return islands_; }
   Index largest() const { return largest_; }
   std::vector<MergedIsland> merge(Index min_voxels);
-  /// The number of islands of each region, without those of the outside that reach the border.
+  /// The number of islands of each region, without islands of the outside that reach the border.
   std::vector<std::size_t> parts(std::size_t regions, std::vector<Index>* smallest = nullptr);
   /// Unites islands of one region that touch in an edge or a corner.
   void unite_touching();
@@ -61,8 +61,8 @@ class Islands {
   }
   RegionIndex& region_of(Index run) const { return regions_[starts_[run]]; }
 
-  /// Calls `body(begin, end)` for the voxels that share a face with the run: one beyond each end, then as
-  /// many as the run has next to it in each neighbouring row.
+  /// Calls `body(begin, end)` for the ranges of voxels that share a face with the run: one voxel beyond each
+  /// end, then the adjacent range in each neighbouring row.
   template <class Body>
   void for_each_contact(Index run, Body&& body) const {
     const std::size_t begin = starts_[run], end = starts_[run + 1];
@@ -107,7 +107,7 @@ std::vector<Index> Islands::find_runs() const {
   return starts;
 }
 
-/// Unites the runs of the voxels in [begin, end), which are whole rows, with those `shift` voxels before
+/// Unites the runs of the voxels in [begin, end), which are whole rows, with the runs `shift` voxels before
 /// them.
 void Islands::unite_across(std::size_t begin, std::size_t end, std::size_t shift) {
   if (begin >= end) return;
@@ -169,7 +169,7 @@ void Islands::collect_runs(Index island) {
   while ((run = next_[run]) != island);
 }
 
-/// The region, other than its own, that shares most faces with the island whose runs were collected.
+/// The other region that shares most voxel faces with the island whose runs were collected.
 RegionIndex Islands::max_shared() {
   const RegionIndex own = region_of(island_runs_[0]);
   neighbours_.clear();
@@ -178,8 +178,8 @@ RegionIndex Islands::max_shared() {
       for (std::size_t v = begin; v < end; ++v)
         if (const RegionIndex r = regions_[v]; r != own && faces_[r]++ == 0) neighbours_.push_back(r);
     });
-  // All voxels around it are in other regions, and it is not the whole volume, since another island is
-  // larger.
+  // The voxels around the island are in other regions, and the island is not the whole volume, since another
+  // island is larger.
   TETWRIGHT_CHECK(!neighbours_.empty());
   RegionIndex best = neighbours_[0];
   for (RegionIndex r : neighbours_)
@@ -194,13 +194,13 @@ void Islands::join(Index a, Index b, Index min_voxels) {
   if (a == b) return;
   const auto total = static_cast<Index>(
       std::min<std::uint64_t>(std::uint64_t{voxels_[a]} + voxels_[b], std::numeric_limits<Index>::max()));
-  // Swapping successors joins two rings. Large islands no longer need one.
+  // Swapping successors joins two rings. Large islands need no ring.
   if (total < min_voxels) std::swap(next_[a], next_[b]);
   sets_.unite(a, b);
   voxels_[sets_.root(a)] = total;
 }
 
-/// Axes of a single voxel have no border: a slice is an image.
+/// Axes with a single voxel have no border, since a slice is an image.
 bool Islands::at_border(Index run) const {
   const std::size_t begin = starts_[run], end = starts_[run + 1], voxels = regions_.size();
   const std::size_t in_plane = begin % plane_;
@@ -229,7 +229,7 @@ std::vector<MergedIsland> Islands::merge(Index min_voxels) {
   }
   faces_.assign(on_interface + std::size_t{1}, 0);
 
-  // The smallest island is on top, among equal ones that with the lowest voxel.
+  // The smallest island is on top; ties go to the lowest voxel.
   using Entry = std::pair<Index, Index>;  // voxels, island
   std::vector<Entry> entries;
   entries.reserve(small_.size());
@@ -239,14 +239,14 @@ std::vector<MergedIsland> Islands::merge(Index min_voxels) {
     if (step % 4096 == 0) throw_if_stopped();
     const auto [count, island] = queue.top();
     queue.pop();
-    // It may have grown since it was queued, or been merged into another one.
+    // Skip an island that has grown since it was queued or was merged into another one.
     if (!sets_.is_root(island) || voxels_[island] != count) continue;
     collect_runs(island);
     const RegionIndex region = max_shared();
     for (Index run : island_runs_)
       std::fill(regions_.begin() + starts_[run], regions_.begin() + starts_[run + 1], region);
-    // An island never joins a smaller one, as the smallest comes first. So its size at least doubles, and a
-    // voxel is visited at most as often as min_voxels can be halved.
+    // The smallest island comes first, so it never joins a smaller one and its size at least doubles. A voxel
+    // is therefore visited at most log2(min_voxels) times.
     for (Index run : island_runs_)
       for_each_contact(run, [&](std::size_t begin, std::size_t end) {
         for (Index other = run_of(begin); starts_[other] < end; ++other)
@@ -282,8 +282,8 @@ std::vector<std::size_t> Islands::parts(std::size_t regions, std::vector<Index>*
   return parts;
 }
 
-/// Unites the runs of two rows, given by their first voxels, that overlap, or would after a step of one voxel
-/// along the row.
+/// Unites runs of two rows, given by their first voxels, that overlap or would overlap after a shift by one
+/// voxel along the row.
 void Islands::unite_rows(std::size_t here, std::size_t there) {
   const std::size_t here_end = here + width_, there_end = there + width_;
   Index a = run_of(here), b = run_of(there);
@@ -291,7 +291,7 @@ void Islands::unite_rows(std::size_t here, std::size_t there) {
     const std::size_t a_from = starts_[a] - here, a_to = starts_[a + 1] - here;
     const std::size_t b_from = starts_[b] - there, b_to = starts_[b + 1] - there;
     if (a_from <= b_to && b_from <= a_to && region_of(a) == region_of(b)) sets_.unite(a, b);
-    // Where both end together, the next run of each touches the current run of the other.
+    // If both end together, the next run of each touches the current run of the other.
     if (a_to == b_to) {
       if (a_to < width_ && region_of(a + 1) == region_of(b)) sets_.unite(a + 1, b);
       if (a_to < width_ && region_of(a) == region_of(b + 1)) sets_.unite(a, b + 1);

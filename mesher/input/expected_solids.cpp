@@ -51,7 +51,7 @@ bool meet(const RepairedSurface& body, const std::vector<const RepairedSurface*>
 }
 
 /// The solid of a body without `later` ones, whose surfaces do not meet. Consists of the body's shells that
-/// are in none of them, and of their shells inside the body, reversed, that are in no other one.
+/// are in no later body, and of the shells of later bodies inside this one and in no other, reversed.
 SolidShape carved_solid(const RepairedSurface& body, const SolidShape& solid,
                         const std::vector<const RepairedSurface*>& later,
                         const std::vector<SolidShape>& later_solids) {
@@ -89,7 +89,7 @@ SurfaceSolid own_solid(const RepairedSurface& s) {
   return {std::move(solid), flaw};
 }
 
-/// The solid of a body that all later ones carve; `own`: the solids of all bodies by themselves.
+/// The solid of a body that all later ones carve. `own` has the solid of each body before carving.
 SurfaceSolid solid_of(const MesherInput& input, std::size_t number, const std::vector<SurfaceSolid>& own) {
   const RepairedSurface& body = input.bodies[number].surface;
   SurfaceSolid solid = own[number];

@@ -9,7 +9,7 @@
 
 namespace tetwright {
 
-/// The solid of a material, derived from its surface and those that carve it.
+/// The solid of a material, derived from its surface and the surfaces that carve it.
 struct SurfaceSolid {
   /// Input units. Nothing for SurfaceFlaw::open and meeting, and if an edge does not have exactly two
   /// triangles or a point has more than one fan of them.
@@ -17,8 +17,8 @@ struct SurfaceSolid {
   SurfaceFlaw flaw = SurfaceFlaw::none;  ///< the first one found; none: `shape` is certain
 };
 
-/// The solid of each body's material: the body without all later ones. Nothing for the first body if layers
-/// are cut from it.
+/// The solid of each body's material: the body without all later ones. std::nullopt for the first body if
+/// layers are cut from it.
 std::vector<std::optional<SurfaceSolid>> expected_solids(const MesherInput& input);
 
 }  // namespace tetwright

@@ -41,7 +41,8 @@ class Chosen {
         throw UsageError("label " + std::to_string(outside_) +
                          " of --labels is the outside label, which is " +
                          "not meshed; leave it out, or name another one with --outside-label");
-      // Merge ranges, so that the last one that starts at or before a label decides.
+      // Merge overlapping ranges, so that the last one that starts at or before a label determines whether it
+      // is chosen.
       if (!ranges_.empty() && range.first <= ranges_.back().second)
         ranges_.back().second = std::max(ranges_.back().second, range.second);
       else
@@ -126,7 +127,7 @@ void check_choice(const LabelVolume& volume, const std::string& file, const Labe
     const auto first = std::lower_bound(counts.begin(), counts.end(), LabelCount(range.first, 0));
     if (first != counts.end() && first->first <= range.second) continue;
     const std::string there = labels_text(volume.labels, choice.outside_label);
-    if (there.empty()) break;  // all is outside
+    if (there.empty()) break;  // the whole volume is outside
     throw InputError(file, 0,
                      (range.first == range.second ? "there is no label " : "there are none of the labels ") +
                          range_text(range) + "; there are " + there);
@@ -137,7 +138,7 @@ void check_choice(const LabelVolume& volume, const std::string& file, const Labe
                              "; is another one outside? see --outside-label");
 }
 
-/// Refuses the name of label `tag`, citing its line if it comes from a file.
+/// Throws an error about the name of label `tag`, citing its line if it comes from a file.
 [[noreturn]] void refuse_name(const LabelChoice& choice, MaterialTag tag, const std::string& message) {
   const auto line = choice.name_lines.find(tag);
   if (line == choice.name_lines.end()) throw UsageError(message + " with --label-names");
@@ -161,7 +162,7 @@ std::vector<LabelMaterial> name_materials(const LabelChoice& choice, const std::
   const auto twice = std::adjacent_find(by_name.begin(), by_name.end(),
                                         [](const auto* a, const auto* b) { return a->name == b->name; });
   if (twice != by_name.end()) {
-    // Cite the later line: the earlier one is valid by itself.
+    // Cite the later line: the earlier one is valid on its own.
     const auto line = [&](MaterialTag tag) {
       const auto found = choice.name_lines.find(tag);
       return found == choice.name_lines.end() ? std::size_t{0} : found->second;
@@ -184,7 +185,7 @@ std::vector<LabelMaterial> name_materials(const LabelChoice& choice, const std::
 /// The region of each voxel: the index of its material, from 1; 0 for labels that are not materials.
 std::vector<RegionIndex> number_regions(const std::vector<MaterialTag>& labels,
                                         const std::vector<LabelMaterial>& materials) {
-  // A table suffices where labels are close together, as nearly always.
+  // Use a table if labels are close together, as they nearly always are.
   const std::int64_t low = materials.front().tag, high = materials.back().tag;
   std::vector<RegionIndex> table;
   if (high - low < 1 << 20) table.resize(static_cast<std::size_t>(high - low) + 1, outside_region);

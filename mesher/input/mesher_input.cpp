@@ -31,7 +31,7 @@ std::set<MaterialTag> tags_in_use(const std::vector<MaterialSurface>& surfaces,
   return tags;
 }
 
-/// Makes the names of groups differ between surfaces, see qualify_names(). Groups that have only a number are
+/// Makes the names of groups unique across surfaces (see qualify_names()). Groups that have only a number are
 /// named after their surface.
 void name_groups(std::vector<MaterialSurface>& surfaces, std::vector<Diagnostic>& findings) {
   const auto with_groups = std::count_if(surfaces.begin(), surfaces.end(),

@@ -17,14 +17,14 @@ struct NamesOfBody {
   std::map<std::string, std::string> names;  ///< from the name in the file to the name that is used
 };
 
-/// Chooses the names that are used, no two alike. A name that only one body has stays as it is. A name that
-/// is in `taken` or that several bodies have is qualified by its body, "heater:minY", with a suffix, "_2", if
-/// that is taken as well.
+/// Chooses unique names. A name that only one body has is kept. A name that is in `taken` or that several
+/// bodies have is prefixed with its body, as in "heater:minY", and gets a suffix such as "_2" if that is
+/// taken as well.
 ///
-/// \param what a plural that says what is named
-/// \param bodies their used names are filled in
+/// \param what plural noun for the things named, for the finding
+/// \param bodies their `names` are filled in
 /// \param taken the chosen names are added
-/// \param findings a finding is added for each body with names other than its file's
+/// \param findings gets a finding for each body with names that differ from its file's
 void qualify_names(const std::string& what, std::vector<NamesOfBody>& bodies, UniqueNames& taken,
                    std::vector<Diagnostic>& findings);
 

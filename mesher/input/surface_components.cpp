@@ -47,7 +47,7 @@ void for_each_edge(const std::vector<EdgeSide>& sides, Body&& body) {
   }
 }
 
-/// The starts of the parts `of(i)` when items are sorted by part; `parts` + 1 entries.
+/// The first index of each part when items i are sorted by their part `of(i)`; `parts` + 1 entries.
 template <class Of>
 std::vector<std::size_t> starts(std::size_t items, std::size_t parts, Of&& of) {
   std::vector<std::size_t> start(parts + 1, 0);
@@ -81,7 +81,7 @@ class Patches {
     peel();
     drop_fins(two_sided);
     drop_walls_of_core();
-    // Core first: patches that hang on it must not affect it.
+    // Balance the core first, since patches attached to it must not affect it.
     balance(PatchKind::core);
     balance(PatchKind::open);
   }
@@ -209,7 +209,7 @@ void Patches::find_seams(const std::vector<EdgeSide>& sides) {
   for (Index i = 0; i < seams_.size(); ++i) patch_seams_[next[seams_[i].patch]++] = i;
 }
 
-/// Drops patches that end only where other patches continue without them.
+/// Drops patches all of whose boundary lies on seams at which other patches continue without them.
 void Patches::drop_flaps() {
   for (Index p = 0; p < kind_.size(); ++p) {
     bool ends = false, needed = false;
@@ -228,7 +228,7 @@ void Patches::drop_flaps() {
   }
 }
 
-/// Sets aside patches with a free edge, and those that then have one.
+/// Sets aside patches with a free edge, and repeats this for patches that then have one.
 void Patches::peel() {
   std::vector<Index> queue;
   const auto look_at = [&](Index edge) {
@@ -244,7 +244,8 @@ void Patches::peel() {
     for (Index i : of_patch(queue[k])) look_at(seams_[i].edge);
 }
 
-/// Drops patches listed from both sides that are attached to others: their two sides enclose nothing.
+/// Drops patches that are listed from both sides and attached to others, since their two sides enclose
+/// nothing.
 void Patches::drop_fins(const std::vector<char>& two_sided) {
   std::vector<char> fin(kind_.size(), 1);
   for (Index t = 0; t < triangles_.size(); ++t) fin[patch_[t]] &= two_sided[t];

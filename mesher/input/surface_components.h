@@ -24,12 +24,12 @@ void add_finding(std::vector<Diagnostic>& findings, DiagnosticCode code, const s
 ///
 /// A *patch* is connected across edges of exactly two triangles. Edges of one, three or more triangles are
 /// *seams*:
-/// - a patch that balances at each of its seams by itself (like each of two cubes that share an edge) is a
+/// - a patch that balances at each of its seams on its own (like each of two cubes that share an edge) is a
 ///   closed component;
-/// - so is a group of patches that balance together, after patches with free edges are set aside; patches are
+/// - so is a group of patches that balance together after patches with free edges are set aside. Patches are
 ///   reversed, small ones first, as long as that makes more edges balance;
-/// - a patch with all of its boundary at seams of triangles that are closed without it is an inner wall;
-///   among three patches with common seams the smallest one is;
+/// - a patch whose whole boundary lies on seams that are closed without it is an inner wall. Among three
+///   patches with common seams, the smallest one is;
 /// - a patch that the file lists from both sides and that has free edges and seams is a fin;
 /// - all others are open components, merged with those that continue them.
 ///

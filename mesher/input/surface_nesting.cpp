@@ -57,7 +57,7 @@ std::vector<Shape> shapes(const std::vector<Vec3>& points, const std::vector<Tri
         volume += a.dot(b.cross(d)) / 6;
         area += (b - a).cross(d - a) / 2;
       }
-      // From apex + x the volume is smaller by area . x / 3.
+      // With the apex moved by x, the volume is smaller by area . x / 3.
       const double range = components[c].closed ? 0 : area.cwiseAbs().dot(shape.high - apex) / 3;
       shape.volume = std::fabs(volume);
       if (shape.volume > range) shape.sign = volume > 0 ? 1 : -1;
@@ -110,7 +110,7 @@ using Pairs = std::vector<std::pair<Index, Index>>;
 
 std::pair<Index, Index> ascending(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 
-/// Pairs (inner, encloser) of components by the inner one's probe alone, sorted.
+/// Pairs (inner, encloser) of components, sorted, determined only by the inner one's probe.
 Pairs holding_probes(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                      const std::vector<SurfaceComponent>& components, const std::vector<Shape>& shapes) {
   struct Hit {
@@ -191,7 +191,7 @@ ArrangedComponents arrange_components(const std::vector<Vec3>& points, const std
         enclosers[inner].push_back(encloser);
   }
 
-  // Enclosers first. The nearest encloser is the one nested deepest itself, the smallest among several.
+  // Process enclosers first. The nearest encloser is the most deeply nested one, and the smallest of several.
   std::vector<Index> order(n);
   std::iota(order.begin(), order.end(), Index{0});
   const auto before = [&](Index a, Index b) {

@@ -20,7 +20,7 @@ struct ArrangedComponents {
 
 /// Determines which components contain which others, and the orientation of each.
 ///
-/// A component contains another one if they do not intersect and one point of the other is inside. For closed
+/// A component contains another if the two do not intersect and one point of the other is inside. For closed
 /// components the test is exact, by the crossings of a vertical line; for open ones the winding number must
 /// be at least 1/2 in absolute value.
 ///

@@ -72,8 +72,8 @@ struct Cleaned {
   std::vector<char> two_sided;        ///< by triangle: wound both ways in the file
 };
 
-/// Merges equal points, drops unused ones and triangles with equal corners, and keeps one of each set of
-/// triangles with the same corners: wound like the majority, in the group of the first one in the file.
+/// Merges equal points, and drops unused points and triangles with equal corners. Keeps one of each set of
+/// triangles with the same corners, oriented like the majority, in the group of the first one in the file.
 Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<Diagnostic>& findings) {
   if (surface.triangles.empty()) throw InputError(file, 0, "there are no triangles");
   for (const Vec3& p : surface.points)
@@ -119,7 +119,7 @@ Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<
     if (j - i > 1 && repeated == 0) repeated_place = surface.points[entries[i].low];
     repeated += j - i - 1;
     result.two_sided.push_back(entries[i].turned != entries[j - 1].turned);
-    // Both windings are adjacent; the middle entry has that of the majority.
+    // Entries with the same winding are adjacent, so the middle entry has the winding of the majority.
     const Entry& e = entries[i + (j - i - 1) / 2];
     result.triangles.push_back(e.turned ? Triangle{e.low, e.high, e.middle}
                                         : Triangle{e.low, e.middle, e.high});

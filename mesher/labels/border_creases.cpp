@@ -30,7 +30,7 @@ CreaseCurves border_creases(const LabelInput& labels) {
       for (int i = 0, j; i < n[axis]; i = j) {
         for (j = i + 1; j < n[axis] && region(j) == region(i);) ++j;
         if (region(i) == outside_region) continue;
-        // Smoothing moves the ends of labels.
+        // Smoothing moves the ends of labels, so skip the last voxel.
         const double from = i == 0 ? -0.5 : i + 0.5, to = j == n[axis] ? j - 0.5 : j - 1.5;
         if (to <= from) continue;
         const auto first = static_cast<Index>(creases.points.size());

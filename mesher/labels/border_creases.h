@@ -6,7 +6,7 @@
 
 namespace tetwright {
 
-/// The edges of the volume's box along which two cuts of a label meet, except for the last voxel at each end,
+/// The parts of the box edges of a volume that are filled by a label, except for the last voxel at each end,
 /// and the corners of the box that a label fills; input units.
 CreaseCurves border_creases(const LabelInput& labels);
 

@@ -22,7 +22,7 @@ struct DistanceTransform {
 
 /// Chamfer distances (Borgefors 1986: weights 3, 4, 5 for neighbours across faces, edges, corners; within 8 %
 /// of the Euclidean ones) minus half a voxel, at most 85 voxels. Regions continue beyond the volume. Needed
-/// for cells so coarse that distances clamped to two voxels do not locate the interface.
+/// for coarse cells, for which distances clamped to two voxels do not locate the interface.
 DistanceTransform distance_transform(const LabelInput& labels);
 
 }  // namespace tetwright

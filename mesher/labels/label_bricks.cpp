@@ -33,8 +33,8 @@ struct TileBricks {
   std::vector<LabelSmoother::Contact> contacts;
 };
 
-/// Copies the voxels of a tile and around it; beyond the volume the closest voxel is repeated. Returns false
-/// if all of them are of one region.
+/// Copies the voxels in and around a tile; beyond the volume the closest voxel is repeated. Returns false if
+/// all voxels are in one region.
 bool copy_voxels(const LabelInput& labels, const std::array<int, 3>& tile, std::span<RegionIndex> out) {
   constexpr int side = LabelSmoother::side;
   const std::array<int, 3>& size = labels.size;
@@ -159,14 +159,14 @@ class Growth {
   /// True if the last adjust() changed it.
   bool changed(RegionIndex region) const { return step_[region] != 0; }
 
-  /// Reads the volumes of the tiles, and the first time their contacts. Returns false if no label's growth
-  /// changes any more.
+  /// Reads the volumes of the tiles and, in the first call, their contacts. Returns false if no label's
+  /// growth changes any more.
   /// \param tile_counts tiles along each axis, x fastest
   bool adjust(const LabelInput& labels, const std::vector<TileBricks>& tiles,
               const std::array<int, 3>& tile_counts) {
     if (!begun_) list_contacts(tiles);
     std::vector<double> now(growth_.size(), 0);
-    // Part by part in the order of the whole volume, so that sums do not depend on the size of tiles.
+    // Sum part by part in the order of the whole volume, so that results do not depend on the tile size.
     for (int z = 0; z < tile_parts * tile_counts[2]; ++z)
       for (int y = 0; y < tile_parts * tile_counts[1]; ++y)
         for (int x = 0; x < tile_parts * tile_counts[0]; ++x) {
@@ -290,7 +290,7 @@ LabelBricks make_label_bricks(const LabelInput& labels, const Progress* progress
 
   const std::size_t tile_count = product(tiles);
   std::vector<TileBricks> parts(tile_count);
-  // Only tiles with labels whose growth changed are computed again.
+  // Recompute only tiles with labels whose growth changed.
   Growth growth(labels.materials.size() + 1);
   for (int round = 0;; ++round) {
     parallel_for(0, tile_count, LabelGrains::tiles, [&](std::size_t begin, std::size_t end) {

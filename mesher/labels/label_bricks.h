@@ -22,7 +22,8 @@ struct LabelBricks {
   static constexpr float units_per_voxel = 15000;
   static constexpr auto band_units = static_cast<std::int16_t>(LabelSmoother::band * units_per_voxel);
 
-  /// The labels near a brick have the channels first, first + 1, ...; none if the brick has a single label.
+  /// The labels near a brick have the channels first, first + 1, ...; no channels if the brick has a single
+  /// label.
   struct Brick {
     std::uint32_t first = 0;
     std::uint16_t count = 0;

@@ -26,7 +26,7 @@ FaceAreas face_areas(const LabelInput& labels) {
           add(0, x + 1 < n[0], 1);
           add(1, y + 1 < n[1], row);
           add(2, z + 1 < counts.size(), slice);
-          // The first voxels along an axis also have a face to the outside before them.
+          // The first voxels along an axis also have a face to the outside on their lower side.
           if (here != outside_region) {
             counts[z][0] += x == 0;
             counts[z][1] += y == 0;

@@ -47,7 +47,7 @@ void for_each_mixed_cube(const std::array<std::uint16_t, brick_volume>& own, Use
   }
 }
 
-/// The last axis of such a volume is reversed.
+/// True if the axes are left-handed. The frame reverses the last axis of such a volume.
 bool is_mirrored(const LabelInput& labels) { return labels.directions.determinant() < 0; }
 
 }  // namespace
@@ -73,7 +73,8 @@ struct LabelField::Shared {
   /// Voxels per cell of the frame, along each axis; negative along a reversed axis.
   Vec3 voxels_per_cell;
   Vec3 first_node;  ///< the frame's origin, in nodes
-  /// For cells larger than a voxel, whose corners may be farther than the band from an interface; else empty.
+  /// For cells larger than a voxel, whose corners may be farther than the band from an interface; otherwise
+  /// empty.
   DistanceTransform depths;
 };
 
@@ -97,7 +98,7 @@ std::shared_ptr<const LabelField> LabelField::make(const LabelInput& labels, con
 }
 
 double LabelField::band_in_cells(const Shared& shared, const GridFrame& voxels) {
-  // With depths the band is as wide as that of level sets, which lattice edges need.
+  // With depths the band is as wide as that of level sets, as lattice edges require.
   return shared.depths.steps.empty() ? LabelSmoother::band * shared.voxel / voxels.cell_size : level_set_band;
 }
 
@@ -169,7 +170,7 @@ class LabelField::Sampler final : public FieldSampler {
     Place p{};
     std::array<int, 3> brick, cell;
     for (int a = 0; a < 3; ++a) {
-      // Beyond the border everything continues unchanged. NaN becomes 0.
+      // Beyond the border, values at the border continue. NaN becomes 0.
       const int nodes = bricks_.counts[a] * brick_cells;
       const double along = std::min(std::max(0.0, at[a]), static_cast<double>(nodes));
       const int whole = std::min(static_cast<int>(along), nodes - 1);
@@ -225,14 +226,14 @@ class LabelField::Sampler final : public FieldSampler {
     return channel ? channel_value(p, *channel) : far_value(p, region);
   }
 
-  /// Region, depth in it (lattice units) and gradient of the depth at a point where all distances are
+  /// Region, depth in it (lattice units) and gradient of the depth, at a point where all distances are
   /// clamped.
   struct Far {
     RegionIndex region;
     double depth;
     Vec3 slope;
   };
-  /// Nothing where distances are not clamped, or depths are not known.
+  /// std::nullopt where distances are not clamped, or if depths are not known.
   std::optional<Far> far_from_interfaces(const Place& p, const Vec3& point) const {
     if (shared_.depths.steps.empty()) return std::nullopt;
     const NearestRegion first = nearest(p).first;
@@ -246,7 +247,7 @@ class LabelField::Sampler final : public FieldSampler {
     return Far{first.region, depth, per_voxel * by_voxels.cwiseProduct(field_.nodes_per_unit_)};
   }
 
-  /// The region of the smallest distance and that of the second smallest.
+  /// The regions of the smallest and the second smallest distance.
   std::pair<NearestRegion, RegionIndex> nearest(const Place& p) const {
     const LabelBricks::Brick& b = *p.brick;
     const auto band = static_cast<float>(field_.band());
@@ -296,7 +297,7 @@ bool LabelField::is_certain(const Vec3& point) const {
       (1 + tolerance::coinciding_cells) * shared_->voxel)
     return false;
   const Vec3 at = to_nodes(point);
-  // A point at a voxel centre is off by rounding only; voxels.
+  // Only rounding separates such a point from a voxel centre; voxels.
   return (at - at.array().round().matrix()).cwiseAbs().maxCoeff() < tolerance::coinciding_cells;
 }
 
@@ -345,8 +346,8 @@ class LabelField::InterfaceFinder {
           if (!smaller_ || is_mixed(x, y, z)) out.push_back(morton_encode(x, y, z));
   }
 
-  /// True if the region at the middle of a range of cells leads by more than distances can change on the way
-  /// to its corners.
+  /// True if the lead of the region at the middle of a range of cells exceeds the possible change of
+  /// distances between there and the corners.
   bool is_far_from_interfaces(const std::array<int, 3>& from, const std::array<int, 3>& to) {
     Vec3 middle, half;
     for (int a = 0; a < 3; ++a) {
@@ -371,8 +372,8 @@ class LabelField::InterfaceFinder {
   const bool smaller_;
   const std::shared_ptr<const MaterialField> on_voxels_;
   const std::unique_ptr<FieldSampler> sampler_;
-  /// Maximum change of a distance (smallest spacings) over a cell: trilinear between nodes that are within
-  /// the band.
+  /// Maximum change of a distance (smallest spacings) over a cell, as distances are trilinear between nodes
+  /// clamped to the band.
   const double max_slope_;
   const double band_;
 };
@@ -440,7 +441,7 @@ std::vector<LeafOrigin> LabelField::band_leaves(RegionIndex region) const {
           low = low.cwiseMin(at);
           high = high.cwiseMax(at);
         }
-        // If cells are large, the far side of an interface may be in another brick.
+        // If cells are large, the other side of an interface may be in another brick.
         low -= Vec3::Constant(around);
         high += Vec3::Constant(around);
         const auto leaf = [](double x) { return static_cast<int>(std::floor(x / leaf_side)) * leaf_side; };

@@ -10,9 +10,9 @@
 namespace tetwright {
 
 /// The frame for a segmented volume. Its box ends exactly at the volume's border, half a voxel beyond the
-/// outermost centres, and its axes are the volume's, right-handed. Cells are cubes of `cell_size` as far as
-/// whole ones fill the box and the axes are perpendicular. Lattice points, the corners and centres of cells,
-/// coincide with voxel centres where cells are one voxel, half a voxel, ...
+/// outermost centres, and its axes are the volume's, right-handed. Cells are cubes of `cell_size` if whole
+/// ones fill the box and the axes are perpendicular; otherwise nearly so. Lattice points, the corners and
+/// centres of cells, coincide with voxel centres where cells are one voxel, half a voxel, ...
 /// \param cell_size input units
 GridFrame label_frame(const LabelInput& labels, double cell_size, bool uniform);
 

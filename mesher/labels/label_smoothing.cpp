@@ -12,7 +12,7 @@ namespace {
 
 using Smoothing = LabelTuning::Smoothing;
 
-/// Binomial coefficients of order 4, of variance 1.
+/// Normalised binomial coefficients of order 4; their variance is 1.
 constexpr std::array<float, 5> kernel{0.0625F, 0.25F, 0.375F, 0.25F, 0.0625F};
 constexpr int kernel_reach = 2;
 /// Standard deviation of the smoothing kernel, and the derivative of probit(u) with respect to t = 2u - 1 at
@@ -26,7 +26,7 @@ float distance_from_share(float u) {
   return -deviation * probit_slope * t / std::sqrt(std::sqrt(1 - t * t));
 }
 
-/// The depth of the centre of a voxel most of which its label still lacks, voxels.
+/// The depth, in voxels, of the centre of a voxel most of which its label still lacks.
 float distance_from_lack(float lack) {
   constexpr float from = Smoothing::lack_from, to = Smoothing::lack_to;
   return Smoothing::deepest * std::clamp((lack - from) / (to - from), 0.0F, 1.0F);
@@ -157,7 +157,7 @@ void LabelSmoother::add_missing_shares(int margin) {
     missing_[l].resize(volume);
     missing_boxes_[l] = {{side, side, side}, {0, 0, 0}};
   }
-  // For each label near a node, its values at the eight sample points a quarter of a voxel from the centre
+  // For each label near a node, the values at the eight sample points a quarter of a voxel from the centre
   // along each axis.
   std::vector<std::array<float, 8>> samples;
   std::vector<float> got;
@@ -236,8 +236,8 @@ void LabelSmoother::enforce_own_labels() {
 }
 
 void LabelSmoother::distances_from_shares(int margin, std::span<const float> growth) {
-  // Shares are 0 farther from a label than one node, where it may lack some of a voxel, plus the kernel's
-  // reach.
+  // Shares vanish beyond one node from a label (where part of a voxel may be missing) plus the reach of the
+  // kernel.
   constexpr int reach_of_shares = 1 + kernel_reach;
   const float none = std::clamp(distance_from_share(0), -band, band);
   for (std::size_t l = 0; l < labels_.size(); ++l) {
@@ -258,9 +258,9 @@ void LabelSmoother::distances_from_shares(int margin, std::span<const float> gro
         std::fill(row + high[0], row + side - margin, none);
       }
   }
-  // Enforced again, because shares below 0 and above 1 were clamped. No distance leaves the band.
+  // Enforce own labels again, because shares below 0 and above 1 were clamped. No distance leaves the band.
   for (const MixedNode& n : mixed_) {
-    // A label that must shrink gets a smaller fixed depth.
+    // If the label must shrink, its fixed depth is reduced.
     const float by_hand = distance_from_lack(n.lack) + std::min(0.0F, growth[labels_[n.own]]);
     const float lead = 2 * std::max(Smoothing::min_distance, by_hand);
     float others = HUGE_VALF;

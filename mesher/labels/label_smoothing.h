@@ -29,21 +29,22 @@ namespace tetwright {
 ///     likewise and added. Done twice.
 ///  3. After each back projection, and after step 4, the value of each node's own label is raised above the
 ///     others by a margin (a constraint as in Whitaker 2000, "Reducing aliasing artifacts in iso-surfaces of
-///     binary volumes"). Labels that still lack most of one of their voxels, rods and single voxels, get a
+///     binary volumes"). Labels that still lack most of one of their voxels (rods and single voxels) get a
 ///     fixed depth there.
 ///  4. The remaining error of each label's total volume is removed by growing or shrinking the label
-///     uniformly. The caller, who sees all tiles, determines by how much, from shares() and contacts().
+///     uniformly. The caller, which sees all tiles, determines the amount from shares() and contacts().
 ///  5. Values u become distances -probit(u), which are correct for a flat interface.
-///  6. Where labels alternate in the four voxels around an edge, the two voxels of one label are connected,
-///     those of the label that is rarer nearby if both form such a pair. Slanted sheets one voxel thick are
-///     connected by such edges only, and labels that touch only along an edge are kept apart.
+///  6. If labels alternate in the four voxels around an edge, the two voxels of one label are connected; if
+///     both labels form such a pair, the label that is rarer nearby is chosen. Slanted sheets one voxel thick
+///     are connected by such edges only, and labels that touch only along an edge are kept apart.
 ///  7. Labels that share a voxel face get a contact of a minimum size, as far as step 6 and the band permit.
 ///
 /// Nodes that neighbouring tiles have in common get identical bits in both.
 class LabelSmoother {
  public:
-  /// Cells of a tile along each side. Nodes around the tile are computed with it and discarded: of side^3
-  /// nodes cells^3 are kept, a quarter. Larger tiles would hold more labels at a time than fit in the cache.
+  /// Cells of a tile along each side. Nodes around the tile are computed with it and discarded: only cells^3
+  /// of side^3 nodes, a quarter, are kept. Larger tiles would hold more labels at a time than fit in the
+  /// cache.
   static constexpr int cells = 32;
   /// Volumes are summed in parts of a tile with this many cells along each side.
   static constexpr int part_cells = 16, parts = cells / part_cells;
@@ -55,7 +56,7 @@ class LabelSmoother {
 
   LabelSmoother();
 
-  /// The labels of side^3 voxels with the tile in their middle, x fastest; to be filled with two or more
+  /// The labels of side^3 voxels centred on the tile, x fastest. The caller fills them with two or more
   /// labels.
   std::span<RegionIndex> voxels() { return raw_; }
   /// Restricts volumes and contacts to the volume: nodes `low` to `high` (exclusive) of the tile, and half a
@@ -112,7 +113,7 @@ class LabelSmoother {
   static constexpr std::array<int, 3> position(int place) {
     return {place % side, place / side % side, place / (side * side)};
   }
-  /// True for coordinates, along one axis, of nodes whose distances are final except for steps 6 and 7.
+  /// True if nodes with this coordinate along an axis have distances that are final except for steps 6 and 7.
   static constexpr bool settled(int i) { return i >= reach - 1 && i <= side - reach; }
   static constexpr int volume = side * side * side;
   static constexpr std::array<int, 3> steps{1, side, side* side};

@@ -27,8 +27,8 @@ class Opening {
         runs_(labels.regions.size()) {}
 
   std::vector<std::size_t> thin_voxels() {
-    // A box starts at a voxel if, for one axis after another, enough consecutive voxels pass the test of the
-    // previous axes. Then every voxel of such a box is thick.
+    // Process one axis after another: a box starts at a voxel if enough consecutive voxels pass the test of
+    // the previous axes. Then mark every voxel of such a box as thick.
     for (int axis = 0; axis < 3; ++axis) sweep(axis, [&](int a, auto&&... p) { start_boxes(a, p...); });
     for (int axis = 0; axis < 3; ++axis) sweep(axis, [&](int a, auto&&... p) { fill_boxes(a, p...); });
     return parallel_collect<std::size_t>(
@@ -48,7 +48,7 @@ class Opening {
   void sweep(int axis, Work&& work) {
     if (progress_) progress_->throw_if_stopped();
     const auto nx = static_cast<std::size_t>(size_[0]), ny = static_cast<std::size_t>(size_[1]);
-    // Whole rows along x at a time, for sequential memory access.
+    // Process whole rows along x at a time, for sequential memory access.
     if (axis < 2)
       parallel_for(0, static_cast<std::size_t>(size_[2]), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t z = begin; z < end; ++z) {
@@ -100,8 +100,8 @@ class Opening {
       }
   }
 
-  /// True for a voxel of the outside in a box that starts before the volume. sweep() does not find those
-  /// boxes, so all are tried.
+  /// True for a voxel of the outside in a box that starts before the volume. sweep() does not find such
+  /// boxes, so this tries all of them.
   bool in_box_from_outside_volume(std::size_t i) const {
     std::array<int, 3> at, low;
     std::size_t rest = i;
@@ -134,7 +134,7 @@ class Opening {
     return true;
   }
 
-  /// True for a voxel next to a thick one: roughness of one voxel, which smoothing removes.
+  /// True for a voxel next to a thick one, which is roughness of one voxel that smoothing removes.
   bool beside_thick(std::size_t i) const {
     std::size_t rest = i, step = 1;
     for (int a = 0; a < 3; ++a) {
@@ -175,8 +175,8 @@ bool in_small_island(const LabelInput& labels, std::size_t voxel, std::size_t co
   return true;
 }
 
-/// Finds the thin voxels of a volume and the cells that they need, from the frame's cells to ever smaller
-/// ones.
+/// Finds the thin voxels of a volume and the cells that they need, starting with the frame's cells and
+/// halving them repeatedly.
 class ThinLabelFinder {
  public:
   ThinLabelFinder(const LabelInput& labels, const GridFrame& frame, const Progress* progress)
@@ -187,8 +187,8 @@ class ThinLabelFinder {
         to_grid_(frame.axes.inverse() * labels.directions / frame.cell_size),
         first_(frame.to_grid(labels.origin)) {}
 
-  /// The highest level, up to `coarsest`, of cells that may contain an interface: those of at most half a
-  /// voxel. Larger ones would break the promises for finer cells.
+  /// The highest level, up to `coarsest`, of cells that may contain an interface: cells of at most half a
+  /// voxel. Larger ones would break the guarantees for finer cells.
   int coarsest_interface_level(int coarsest) const {
     constexpr double max_cell =
         1 / LabelTuning::Field::promised_cells_per_voxel + tolerance::coinciding_cells;  // voxels

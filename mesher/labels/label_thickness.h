@@ -13,22 +13,22 @@ namespace tetwright {
 /// Cells of a frame that must be split because a label, or the outside, is thinner than two of them.
 struct ThinLabels {
   RefinementRegions finer;
-  /// Parts still thinner than two of the smallest cells; counts and positions are those of voxels of the
-  /// volume, positions in cells of the frame.
+  /// Parts still thinner than two of the smallest cells. Counts are of voxels of the volume; positions are
+  /// voxel centres in cells of the frame.
   std::vector<ThinPart> too_thin;
 };
 
 /// Finds the voxels where labels are thin. A label is thick at a voxel if a cube of two cells that contains
 /// the voxel fits into the label (an opening, Serra 1982), or the voxel is adjacent to such a cube. Elsewhere
-/// the cells around the voxel are halved until the cube fits or they have an eighth of their size.
-/// Islands of fewer than eight voxels, if there are few, get eight cells per voxel. Also determines how large
-/// cells at plain interfaces may be. Takes two bytes per voxel meanwhile.
+/// the cells around the voxel are halved until the cube fits or they have an eighth of their size. Islands of
+/// fewer than eight voxels, if there are few, get eight cells per voxel. Also determines how large cells at
+/// other interfaces may be. Needs two bytes per voxel temporarily.
 /// \param frame from label_frame()
 /// \param progress may be null
 /// \throws Interrupted
 ThinLabels find_thin_labels(const LabelInput& labels, const GridFrame& frame, const Progress* progress);
 
-/// Numbers of cells to be split whose centre is in a label, and outside.
+/// Numbers of cells to be split whose centre is in a label, and of those whose centre is outside.
 struct ThinCells {
   double inside = 0, outside = 0;
 };

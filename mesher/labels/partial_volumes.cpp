@@ -110,7 +110,7 @@ std::vector<double> LabelSmoother::shares(const std::array<int, 3>& part) const 
         corners.resize(candidates.size());
         for (std::size_t l = 0; l < candidates.size(); ++l)
           for (int k = 0; k < 8; ++k) corners[l][k] = fields_[candidates[l]][places[k]];
-        // Each sample represents the box around it, which is divided where an interface crosses it.
+        // Each sample represents the box around it, which is split if an interface crosses it.
         for (int i = 0; i < Smoothing::samples_along * Smoothing::samples_along * Smoothing::samples_along;
              ++i) {
           const std::array<int, 3> step{i % Smoothing::samples_along,

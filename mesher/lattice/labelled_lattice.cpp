@@ -41,7 +41,7 @@ std::size_t relabel_isolated_vertices(std::vector<RegionIndex>& regions, const T
   parallel_for(0, tets.size(), LatticeGrains::tets, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Tet& t = tets[i];
-      if (!mixed(regions, t)) continue;  // mixed tets settle nearly all points; alone() decides the rest
+      if (!mixed(regions, t)) continue;  // mixed tets suffice for nearly all points; alone() checks the rest
       for (int a = 0; a < 4; ++a)
         for (int b = 0; b < 4; ++b)
           if (a != b && regions[t[a]] == regions[t[b]]) mark(has_company[t[a]]);
@@ -56,7 +56,7 @@ std::size_t relabel_isolated_vertices(std::vector<RegionIndex>& regions, const T
   std::vector<Index> isolated_vertices;
   for (Index p : stars.points())
     if (!has_company[p] && alone(p)) isolated_vertices.push_back(p);
-  // Sequentially, so that two adjacent isolated vertices do not just exchange their regions.
+  // Run sequentially, so that two adjacent isolated vertices do not just exchange their regions.
   std::stable_partition(isolated_vertices.begin(), isolated_vertices.end(),
                         [&](Index p) { return regions[p] == outside_region; });
   std::size_t count = 0;
@@ -106,7 +106,7 @@ float LabelledLattice::margin(Index p) const {
 void LabelledLattice::list_star_regions(std::size_t region_count) {
   const std::vector<Index>& points = stars.points();
   starts_.assign(points.size() + 1, 0);
-  if (region_count == 2) {  // both, at each point near an interface
+  if (region_count == 2) {  // each star near an interface has both regions
     regions_.resize(2 * points.size());
     values_.assign(regions_.size(), 0);
     for (std::size_t s = 0; s < points.size(); ++s) {
@@ -115,7 +115,7 @@ void LabelledLattice::list_star_regions(std::size_t region_count) {
     }
     return;
   }
-  // Two passes over the stars: sizes, then regions.
+  // Make two passes over the stars: sizes, then regions.
   const auto regions_of = [&](Index p, std::vector<RegionIndex>& out) {
     out.clear();
     for (Index t : stars.tets(p))

@@ -18,8 +18,8 @@ namespace tetwright {
 /// The lattice whose points are moved and whose tets are cut: the tets that can contribute to the mesh, and
 /// the region of every point.
 ///
-/// For each point near an interface the signed distances of the regions in its closed star are stored; the
-/// cuts of its edges depend on nothing else. The region of a pure point is the one of the smallest distance.
+/// For each point near an interface, stores the signed distances of the regions in its closed star. The cuts
+/// of its edges depend on nothing else. The region of a pure point is the one of the smallest distance.
 class LabelledLattice {
  public:
   std::vector<Vec3> positions;  ///< lattice units
@@ -76,10 +76,10 @@ class LabelledLattice {
 
 /// Makes a labelled lattice.
 ///
-/// Tets outside without a point next to an interface are dropped, unless `keep_outside`. Isolated vertices,
-/// points without a neighbour of their own region, get the region that most of their neighbours have, those
-/// outside first. They come from cracks and self-intersections smaller than a cell, and each would become a
-/// component or a cavity.
+/// Tets outside without a point next to an interface are dropped, unless `keep_outside`. Isolated vertices
+/// (points without a neighbour of their own region) get the region that most of their neighbours have,
+/// isolated vertices of the outside first. They result from cracks and self-intersections smaller than a
+/// cell, and each would become a component or a cavity.
 /// \param nearest region of each point
 /// \param region_count number of regions
 /// \param isolated_vertices receives their number; may be null

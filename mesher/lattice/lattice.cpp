@@ -32,20 +32,20 @@ LeafBox leaf_box(const Octree& octree, std::size_t i) {
   return {low, 2 << leaf.level, leaf.level};
 }
 
-/// Corner numbers (bits x, y, z) of the face of `axis` at `upper`, in cyclic order.
+/// Corner numbers (bits x, y, z) of the lower or upper face normal to `axis`, in cyclic order.
 std::array<int, 4> face_ring(int axis, bool upper) {
   const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3, base = upper ? 1 << axis : 0;
   return {base, base | u, base | u | v, base | v};
 }
 
-/// The centre of the face of `axis` at `upper`.
+/// The centre of the lower or upper face normal to `axis`.
 HalfCells face_centre(const LeafBox& box, int axis, bool upper) {
   HalfCells p = box.centre();
   p[axis] = box.low[axis] + (upper ? box.side : 0);
   return p;
 }
 
-/// True if the face of `axis` at `upper` is on the box.
+/// True if the lower or upper face normal to `axis` is on the box.
 bool on_box(const Octree& octree, const LeafBox& box, int axis, bool upper) {
   return upper ? box.low[axis] + box.side == 2 * octree.cells[axis] : box.low[axis] == 0;
 }
@@ -86,15 +86,15 @@ class TetEmitter {
       if (upper) around(axis, upper, points_.leaf_centres[j]);
     } else if (other.level > box_.level) {
       against_bigger(axis, upper, other, points_.leaf_centres[j]);
-    }  // a smaller neighbour emits the tets between
+    }  // smaller neighbours emit the tets between
   }
 
-  /// The tets between this leaf's centre, `apex` and each edge of the face.
+  /// Emits the tets between this leaf's centre, `apex` and each edge of the face.
   void around(int axis, bool upper, Index apex) {
     const std::array<int, 4> ring = face_ring(axis, upper);
     for (std::size_t e = 0; e < 4; ++e) {
       const int a = ring[e], b = ring[(e + 1) % 4];
-      // The edges of finest cells cannot have a midpoint.
+      // Edges of finest cells have no hanging midpoints.
       const Index m = box_.level > 0 ? find(middle(box_.corner(a), box_.corner(b))) : no_index;
       if (m == no_index) {
         emit(centre_, apex, corners_[a], corners_[b]);
@@ -150,7 +150,7 @@ Index LatticePoints::find(MortonKey key, Index hint) const {
 
 LatticePoints lattice_points(const Octree& octree) {
   LatticePoints points;
-  // The lowest bit below the key marks centres; corners come from up to eight leaves.
+  // The lowest bit, below the key, marks centres. Up to eight leaves emit the same corner.
   std::vector<std::uint64_t> marked = parallel_collect<std::uint64_t>(
       0, octree.size(), LatticeGrains::leaves,
       [&](std::size_t begin, std::size_t end, std::vector<std::uint64_t>& out) {
@@ -163,7 +163,7 @@ LatticePoints lattice_points(const Octree& octree) {
               if (on_box(octree, box, axis, upper))
                 out.push_back(morton_encode(face_centre(box, axis, upper)) << 1);
         }
-        // Most repetitions are within a chunk; a quarter of the keys remains.
+        // Most duplicates are within a chunk; a quarter of the keys remains.
         std::sort(out.begin(), out.end());
         out.erase(std::unique(out.begin(), out.end()), out.end());
       });

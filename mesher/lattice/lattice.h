@@ -41,12 +41,12 @@ std::vector<std::uint8_t> far_outside(const std::vector<NearestRegion>& regions,
 /// The tets of the body-centred lattice: positive, conforming without T-junctions, filling the box.
 ///
 /// Two leaves of equal size that share a face give four tets around the segment between their centres, one
-/// for each edge of the face. Where a leaf is next to four smaller ones, each of the four small faces is cut
+/// for each edge of the face. If a leaf is next to four smaller ones, each of the four small faces is cut
 /// along the diagonal through the centre of the large face, and its triangles are joined to both centres. On
-/// the box the centre of the face replaces the neighbour's centre. An edge with a hanging midpoint is split
-/// there. Every face between two pyramids is a triangle of a centre and an edge, and every diagonal depends
-/// only on its quadrilateral, so neighbours agree. Dihedral angles are 60 and 90 degrees between equal leaves
-/// and 45 to 120 elsewhere.
+/// the box, the centre of the face replaces the neighbour's centre. An edge with a hanging node at its
+/// midpoint is split there. Every face between two pyramids is spanned by a centre and an edge, and every
+/// diagonal depends only on its quadrilateral, so neighbouring tets conform. Dihedral angles are 60 and 90
+/// degrees between equal leaves and 45 to 120 elsewhere.
 ///
 /// \param unwanted by point, may be null: tets of leaves up to `unwanted_level` are omitted if all their
 ///   points are unwanted

@@ -12,7 +12,8 @@ namespace tetwright {
 namespace {
 
 /// Appends the parents (level l + 1) that must be split because the cell `key` of level l is split: its own
-/// parent, and those of its neighbours across faces and edges, which must exist as cells of level l.
+/// parent, and the parents of its neighbours across faces and edges, since these must exist as cells of level
+/// l.
 void append_parents(MortonKey key, const std::array<int, 3>& size, std::vector<MortonKey>& out) {
   const std::array<int, 3> p = morton_decode(key);
   const auto parent_of = [&](const std::array<int, 3>& q) {
@@ -20,7 +21,7 @@ void append_parents(MortonKey key, const std::array<int, 3>& size, std::vector<M
       if (q[a] < 0 || q[a] >= size[a]) return;
     out.push_back(morton_encode(q) >> 3);
   };
-  // Only the neighbours on the outer side of the parent have another parent.
+  // Only neighbours on the outer sides of the parent have another parent.
   std::array<int, 3> outer;
   for (int a = 0; a < 3; ++a) outer[a] = p[a] & 1 ? 1 : -1;
   out.push_back(key >> 3);
@@ -75,8 +76,8 @@ void cut_off_at_box(Octree& octree, const std::array<int, 3>& box) {
   octree.cells = box;
 }
 
-/// True if the cell contains one interface, and trilinear interpolation between the corners of the cell
-/// places it within `tolerance` (voxels) of the interface on voxels. `key` and `level` are in voxels.
+/// True if the cell contains a single interface, and trilinear interpolation between the corners of the cell
+/// yields an interface within `tolerance` (voxels) of the one on voxels. `key` and `level` are in voxels.
 bool interpolates(FieldSampler& sampler, MortonKey key, int level, double tolerance,
                   const MaterialField& field) {
   const double voxel = 1 << field.refinement();  // lattice units
@@ -104,7 +105,7 @@ bool interpolates(FieldSampler& sampler, MortonKey key, int level, double tolera
         const auto mix = [](double a, double b, double f) { return a + f * (b - a); };
         const double coarse = mix(mix(mix(corner[0], corner[1], fx), mix(corner[2], corner[3], fx), fy),
                                   mix(mix(corner[4], corner[5], fx), mix(corner[6], corner[7], fx), fy), fz);
-        // A distance has slope 1, so near the interface the difference of values is the displacement.
+        // Distances have slope 1, so near the interface the difference of values is the displacement.
         if (std::min(std::abs(value), std::abs(coarse)) >= voxel && (value < 0) == (coarse < 0)) continue;
         if (std::abs(coarse - value) > tolerance * voxel) return false;
       }

@@ -32,20 +32,20 @@ struct Octree {
   std::size_t find(MortonKey finest_cell, std::size_t hint = 0) const;
 };
 
-/// Returns the cells of a level (keys >> 3 * level) that must be split, given the ascending list of those
-/// already split. Called for levels 1 and up, in that order. The result need be neither sorted nor unique.
+/// Returns the cells of a level (keys >> 3 * level) that must be split, given the ascending list of cells
+/// already split. Called for levels 1 and up, in this order. The result need be neither sorted nor unique.
 using SplitCells = std::function<std::vector<MortonKey>(int level, const std::vector<MortonKey>& already)>;
 
-/// The coarsest octree in which all cells returned by `split` are split and that is balanced across faces and
-/// edges, built in one sweep from the finest level up.
+/// The coarsest octree that is balanced across faces and edges and in which all cells returned by `split` are
+/// split. Built in one sweep from the finest level up.
 Octree build_octree(const std::array<int, 3>& cells, int root_level, const SplitCells& split);
 
 struct OctreeOptions {
   bool uniform = false;      ///< cells of one voxel everywhere (the frame's root level must be 0)
   double adaptivity = 0.05;  ///< the error that a coarse cell may have at an interface, voxels
-  /// Level above a voxel of the largest cells that may contain an interface. Larger ones would be costly to
-  /// test, since all voxel corners in a cell are read, and their own corners would mostly be outside the
-  /// narrow band.
+  /// Level, above that of a voxel, of the largest cells that may contain an interface. Larger ones would be
+  /// costly to test, since the test reads all voxel corners in a cell, and their own corners would mostly be
+  /// outside the narrow band.
   int coarsest_interface_level = 2;
 };
 

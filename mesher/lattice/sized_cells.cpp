@@ -31,7 +31,7 @@ std::vector<MortonKey> root_cells(const GridFrame& frame) {
 RefinementRegions find_sized_cells(const MaterialField& field, const MaxCell& max_cell, bool outside,
                                    Progress* progress) {
   const GridFrame& frame = field.frame();
-  // Tested at the centre and the corners: lengths that grow slowly are not much smaller anywhere between.
+  // Test at the centre and the corners: lengths vary slowly, so they are not much smaller in between.
   const auto too_large = [&](const Vec3& centre, double side) {
     const auto asks = [&](const Vec3& at) { return side * frame.cell_size > max_cell(frame.to_input(at)); };
     if (asks(centre)) return true;

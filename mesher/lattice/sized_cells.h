@@ -9,12 +9,12 @@
 
 namespace tetwright {
 
-/// The largest cell wanted at a point; both in input units. May be called concurrently.
+/// The max cell size at a point; both in input units. May be called concurrently.
 using MaxCell = std::function<double(const Vec3&)>;
 
 /// The cells of a field's octree that must be split so that none is larger than `max_cell`: inside, by up to
 /// three levels below a voxel; at interfaces down to a voxel, which their distances resolve.
-/// \param outside splits cells outside, too
+/// \param outside also splits cells outside
 /// \pre the field is not refined
 /// \throws OutputError if the memory does not suffice for these cells
 /// \throws Interrupted

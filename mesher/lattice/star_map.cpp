@@ -28,7 +28,7 @@ StarMap::StarMap(std::vector<Index> points, std::size_t point_count, const TetLi
     : points_(std::move(points)) {
   slots_.assign(point_count, no_index);
   for (Index i = 0; i < points_.size(); ++i) slots_[points_[i]] = i;
-  // Rows are counted, filled in any order of threads, then sorted, so the result does not depend on that
+  // Rows are counted, filled by threads in any order, then sorted, so the result does not depend on that
   // order.
   std::vector<Index> counts(points_.size(), 0);
   const auto for_each_corner = [&](std::size_t first, std::size_t last, auto&& body) {

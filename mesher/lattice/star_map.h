@@ -97,7 +97,7 @@ class StarMap {
   static constexpr Index chunk_rows = 4096;
 
   std::vector<Index> points_, slots_;
-  std::vector<std::vector<std::uint8_t>> chunks_;  ///< the rows of chunk_rows slots, then one byte
+  std::vector<std::vector<std::uint8_t>> chunks_;  ///< rows of chunk_rows slots, then one padding byte
   std::vector<std::uint32_t> offsets_;             ///< of rows in their chunk, and of each chunk's end
 };
 

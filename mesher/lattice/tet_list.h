@@ -11,8 +11,8 @@
 
 namespace tetwright {
 
-/// A list of tets, stored in pieces of equal size. The lattice is the largest array of all; in pieces it can
-/// be freed gradually while it is copied or converted.
+/// A list of tets, stored in pieces of equal size. The lattice is the largest array; pieces allow it to be
+/// freed gradually while it is copied or converted.
 class TetList {
  public:
   static constexpr std::size_t piece_size = 1 << 15;

@@ -16,24 +16,24 @@ struct CellGrains {
 
 /// The choice of cells, and what cells can resolve; mesher/README.md, Tuned numbers, explains the terms.
 struct CellTuning {
-  /// Cells for a wanted number of tets.
+  /// Cells for a target number of tets.
   struct TargetCount {
-    /// Dense tets per tet wanted in the end: fewer leave the simplifier no choice, more take time.
+    /// Dense tets per target tet: fewer leave the simplifier no choice, more take time.
     static constexpr double surface_dense_per_target = 40, label_dense_per_target = 5;
-    /// Likewise for surfaces with creases. Their patches may be narrower than a cell, and only what cells
-    /// resolve can be kept. Of nine parts at 10,000 tets, the two with strips of half a cell have, at 100
-    /// instead of 40, half and a third of the distance from creases (99th percentile), and lose no corners
-    /// (Measurements, Creases).
+    /// Likewise for surfaces with creases. Their patches may be narrower than a cell, and features that cells
+    /// do not resolve are lost. Nine parts were meshed at 10,000 tets: with 100 instead of 40, the two with
+    /// strips of half a cell have half and a third of the distance from creases (99th percentile), and lose
+    /// no corners (Measurements, Creases).
     static constexpr double creased_dense_per_target = 100;
     static constexpr double max_dense_tets = 20e6;  ///< bounds time and memory
     static constexpr int min_resolution = 32;       ///< trades time for details
-    /// Max lattice tets along the surface per dense tet wanted: flat bodies have few dense ones.
+    /// Max lattice tets along the surface per target dense tet: flat bodies have few dense ones.
     static constexpr double max_lattice_per_dense = 4;
-    /// Smallest cells that thin layers take, in cells: DomainTuning::Refinement::max_levels halvings.
+    /// Smallest cells used for thin layers, in cells: DomainTuning::Refinement::max_levels halvings.
     static constexpr double min_refined = 0.125;
   };
 
-  /// Cells of labels for a wanted number of tets.
+  /// Cells of labels for a target number of tets.
   struct LabelCells {
     /// Dense tets per face between two materials, as large as a squared cell; half as many per face to the
     /// outside. Fitted to volumes.
@@ -43,29 +43,29 @@ struct CellTuning {
     /// Cells larger than a voxel, in voxels, largest first: powers of two, so that halved ones align with
     /// voxels. Larger ones, halved three times, would not resolve a single voxel.
     static constexpr std::array<int, 2> large_cells{4, 2};
-    /// Dense tets per tet wanted in cells this large, and the share of those in cells of a voxel above which
-    /// large cells save too little to be worth their coarseness: where labels are thin cells are halved
-    /// anyway (Measurements, Cells of labels).
+    /// Dense tets per target tet with cells this large. They are used only if they give at most this fraction
+    /// of the dense tets of voxel-sized cells: where labels are thin, cells are halved anyway, and too little
+    /// would be saved (Measurements, Cells of labels).
     static constexpr double large_cells_dense_per_target = 20, max_share_of_voxel_cells = 0.5;
     /// A ball of this many large cells loses 1 % of its volume to chords: measured, 0.27 (cell / radius)^2.
     /// Labels of few voxels change more by smoothing.
     static constexpr double min_cells_of_part = 590, few_voxels = 1000;
     /// Whole cells fill the volume along each axis, so cells larger than this multiple of its shortest side
-    /// would be flat. They shrink to that, but not below this fraction of the size wanted.
+    /// would be flat. They shrink to that, but not below this fraction of the size required.
     static constexpr double max_side_share = 1.5, min_share_of_wanted = 0.25;
   };
 
-  /// Cells for wanted edge lengths.
+  /// Cells for target edge lengths.
   struct TargetLengths {
-    /// Size of dense cells per edge length wanted: 1 / 2.5, so that the simplifier has a choice.
+    /// Size of dense cells per target edge length: 1 / 2.5, so that the simplifier has a choice.
     static constexpr double cell_per_edge = 0.4;
-    /// Limit of the cells inside per edge length wanted: cells are halved until they are within it, so they
-    /// are about half of it on average.
+    /// Max size of interior cells per target edge length. Cells are halved until they are within it, so their
+    /// mean is about half of it.
     static constexpr double inner_cell_per_edge = 0.8;
-    /// Max cells along the longest side; where smaller cells are wanted, cells are halved and edges split.
+    /// Max cells along the longest side. Where smaller cells are required, cells are halved and edges split.
     static constexpr double max_resolution = 256;
-    /// Number of points on each surface at which sizes are evaluated: more take longer and find smaller
-    /// spots.
+    /// Number of points on each surface at which sizes are evaluated: more take longer and find smaller spots
+    /// of short target lengths.
     static constexpr double samples = 20000;
   };
 
@@ -73,16 +73,16 @@ struct CellTuning {
   struct ToleranceCells {
     /// The fraction of a tolerance that a dense mesh may use up: the rest is the simplifier's.
     static constexpr double dense_share = 0.5;
-    /// Initial cells, in tolerances: smooth surfaces come within half of one. Those of surfaces with creases
-    /// are larger: flat faces need no smaller ones.
+    /// Initial cell size, in tolerances, for smooth surfaces, which it brings within half a tolerance, and
+    /// for surfaces with creases, whose flat faces need no smaller cells.
     static constexpr double first_cell = 2, first_cell_of_part = 12;
     static constexpr int min_resolution = 64;  ///< trades time for details
     /// Distance within which surface and mesh correspond: cells, or tolerances if that is more.
     static constexpr double reach_cells = 2, reach_tolerances = 2;
-    /// Max rounds that halve cells locally, and those that do not reduce the largest distance.
+    /// Max rounds that halve cells locally, and max rounds that do not reduce the largest distance.
     static constexpr int max_fine_rounds = 4, max_worse_rounds = 2;
-    /// Fraction of the tolerance that is good enough where halving cells locally gains nothing more: the
-    /// simplifier's samples can still be kept within the tolerance. Otherwise all cells become smaller.
+    /// Fraction of the tolerance that is good enough once halving cells locally gains no more: the simplifier
+    /// can still keep samples within the tolerance. Otherwise all cells become smaller.
     static constexpr double enough_share = 0.8;
     /// Factor on the resolution where all cells become smaller, and max number of meshes made.
     static constexpr double resolution_growth = 1.5;
@@ -94,29 +94,29 @@ struct CellTuning {
 
   /// Thin walls and gaps (the guide, Thin walls, Choose depths).
   struct WallBudget {
-    /// Tets that thin walls and gaps may add, or as many as there are without them if that is more; a plate a
-    /// thousandth as thick as wide takes 3.3 to 5.8 million (Measurements, Thin walls).
+    /// Max number of tets that thin walls and gaps may add, or the number of tets without them if that is
+    /// larger. A plate a thousandth as thick as wide takes 3.3 to 5.8 million (Measurements, Thin walls).
     static constexpr double max_added_tets = 8e6;
-    static constexpr double min_cheap_tets = 1e6;  ///< tets that always count as cheap
+    static constexpr double min_cheap_tets = 1e6;  ///< adding this many tets always counts as cheap
     /// Max MesherOptions::min_gap and min_thickness, cells: closing and omitting measure cell by cell around
     /// each point of the surface.
     static constexpr double max_limit_cells = 16;
-    /// Factor on the tets that fill a thin wall in good shapes, where its rims stay sharp.
+    /// Factor on the number of well-shaped tets that fill a thin wall, if its rims stay sharp.
     static constexpr double filling_with_creases = 1.5;
-    /// Share of a surface's area with closed gaps above which its creases are given up: those would lie
+    /// Share of a surface's area with closed gaps above which its creases are dropped, as they would lie
     /// inside the solid.
     static constexpr double max_closed_share = 0.01;
   };
 
   /// Resolution of surfaces and their patches.
   struct Patches {
-    /// In diagonals: a surface whose points are all this close to a plane encloses nothing, in cells of any
-    /// size.
+    /// A surface whose points are all within this distance of a plane, in diagonals, encloses nothing in
+    /// cells of any size.
     static constexpr double flat_surface = 1e-6;
     static constexpr double min_area = 8;      ///< squared cells: cells do not resolve smaller patches
     static constexpr double corner_reach = 1;  ///< cells: turns within this distance are not corners
-    /// Cells from a curve where three regions meet, or from a visible surface, within which creases are not
-    /// reported: such curves are known to half a cell.
+    /// Distance, cells, from a curve where three regions meet within which creases are not reported, and max
+    /// distance of a reported crease from a visible surface: such curves are accurate to half a cell only.
     static constexpr double junction_reach = 1.5;
   };
 };

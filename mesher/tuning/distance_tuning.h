@@ -13,11 +13,11 @@ struct DistanceGrains {
   static constexpr std::size_t sampled_voxels = 512;     ///< a microsecond or more each
   static constexpr std::size_t cells_of_regions = 1024;  ///< whose regions are looked up
   static constexpr std::size_t marched_voxels = 2048;    ///< of an expected solid
-  static constexpr std::size_t cap_cells = 256;          ///< and their corners and edges
+  static constexpr std::size_t cap_cells = 256;          ///< with their corners and edges
   static constexpr std::size_t measured_voxels = 256;    ///< each shrinks balls
   static constexpr std::size_t crease_segments = 256;    ///< each needs queries of trees
   static constexpr std::size_t band_leaves = 16;         ///< 512 grid points each
-  static constexpr std::size_t leaves = 64;              ///< or corners of them, where a few points are read
+  static constexpr std::size_t leaves = 64;              ///< or grid points that need a few reads each
   static constexpr std::size_t depth_boxes = 64;         ///< split further
   static constexpr std::size_t depth_leaves = 16;        ///< with exact distances
 };
@@ -41,38 +41,38 @@ struct DistanceTuning {
     /// Cells. A sheet at least this thick never tears: wherever it lies, a lattice point is inside (the
     /// guide, Regions).
     static constexpr double min_cells = 1.5;
-    /// Cosine below which the region between two surfaces is a sheet. Otherwise it is a wedge, which is thin
-    /// at its edge in cells of any size.
+    /// Cosine between the surfaces' gradients below which the region between them is a sheet. Otherwise it is
+    /// a wedge, which is thin at its edge in cells of any size.
     static constexpr double max_cosine = -0.95;
     /// Thinner sheets (voxels) are gaps between two faces meant to coincide.
     static constexpr double min_thickness = 0.1;
     /// Surfaces of two bodies that face each other (cosine below `contact_cosine`) and are closer than this
-    /// (voxels) count as one (the guide, Regions). Common faces of bodies are known to a few hundredths of a
-    /// voxel, near sharp edges to a few tenths, and slivers of another region between them would be noise.
+    /// (voxels) count as one (the guide, Regions). Common faces of bodies are accurate to a few hundredths of
+    /// a voxel, near sharp edges to a few tenths, so slivers of another region between them would be noise.
     static constexpr double contact = 0.4, contact_cosine = -0.7;
   };
 
   /// Parts reported as too thin.
   struct ThinParts {
-    /// Voxels: a region is identified this far from an interface and must extend that far from it.
+    /// Distances from an interface, voxels, at which the region is identified and to which it must extend.
     static constexpr double identified_at = 0.25, thick_at = 2;
-    /// Max cosine of two interfaces that face each other. Others form a wedge, which is thin at its edge in
-    /// cells of any size.
+    /// Max cosine between the normals of two interfaces that face each other. Otherwise they form a wedge,
+    /// which is thin at its edge in cells of any size.
     static constexpr double max_cosine = -0.5;
   };
 
   /// Holes of surfaces and the caps that close them.
   struct Caps {
-    /// Points of at least this generalised winding number are inside: one half plus more than the rounding
+    /// Points with at least this generalised winding number are inside: one half plus more than the rounding
     /// error, so that the back of a flat sheet is consistently outside.
     static constexpr double inside_winding = 0.5001;
-    /// Error of distances near the surface, voxels: the guide, Signed distances.
+    /// Error of distances near the surface, voxels (the guide, Signed distances).
     static constexpr double distance_error = 0.02;
-    /// Distance of a crossing from both ends of its edge, as a share of the edge: no cap triangle has zero
-    /// area.
+    /// Min distance of a crossing from both ends of its edge, as a share of the edge, so that no cap triangle
+    /// has zero area.
     static constexpr double min_share = 0.02;
-    /// Max rounds. Each cap is followed to its end; later rounds cap only where the band of a cap extends
-    /// into another inside.
+    /// Max rounds. Each cap is followed to its end, so later rounds cap only where the band of a cap extends
+    /// into another inside region.
     static constexpr int rounds = 4;
   };
 
@@ -84,35 +84,36 @@ struct DistanceTuning {
     static constexpr int max_shrinks = 16;
     /// The ball has stopped shrinking when its radius changes by less than this fraction.
     static constexpr double min_shrink = 1e-6;
-    /// Squared distances count as equal within this fraction: rounding of coordinates leaves less, down to a
-    /// thousandth of a voxel.
+    /// Squared distances count as equal within this fraction: differences from rounding of coordinates are
+    /// smaller, for distances down to a thousandth of a voxel.
     static constexpr double tie = 1e-9;
     /// Distance in front of and behind a surface point at which its sides are tested, voxels.
     static constexpr double side_distance = 1e-4;
   };
 
-  /// Thin walls and gaps of one surface. The guide, Thin walls, has the method; Measurements, Thin walls,
-  /// what comes of it.
+  /// Thin walls and gaps of one surface. The guide, Thin walls, has the method; Measurements, Thin walls, has
+  /// the results.
   struct Walls {
     /// Thinnest walls and gaps that a lattice resolves, cells: wherever they lie, a lattice point is inside.
     static constexpr double min_shown_cells = 1.25;
-    /// Minus the max cosines of facing walls that count for changing distances (wedges of up to about 70
-    /// degrees tear as well), for choosing cells, and for reports and cells more than three levels down
-    /// (within 8 degrees of parallel): tips of wedges are thin in cells of any size.
+    /// Negated max cosines between the normals of facing walls. The first is for changing distances (wedges
+    /// of up to about 70 degrees tear as well), the second for choosing cells, the third for reports and for
+    /// cells more than three levels down (within 8 degrees of parallel, since tips of wedges are thin in
+    /// cells of any size).
     static constexpr double facing_to_change = 0.3, facing_to_refine = 0.9, facing_to_report = 0.99;
     /// Distances come from the triangles where a wall or gap is thinner than this, voxels: interpolation
     /// between grid points is accurate only if each wall has two voxels of its own, in any direction.
     static constexpr double exact_below = 2.5;
     /// Tolerance, voxels, within which distances on voxels must be as expected to rule out thin walls. Larger
-    /// values save measuring, and miss walls.
+    /// values save measurements but miss walls.
     static constexpr double trusted = 0.3;
     /// Cosine between the direction to the closest point and its normal below which that point is on the rim
     /// of a gap.
     static constexpr double min_alignment = 0.7;
-    /// Minus the cosine between the directions from a point to two walls around it: 18 degrees (the guide,
-    /// Thin walls). It falls in front of the mouth of a wide gap.
+    /// Min negated cosine between the directions from a point to the walls on both sides: within 18 degrees
+    /// of opposite (the guide, Thin walls). It is smaller in front of the mouth of a wide gap.
     static constexpr double min_opposition = 0.95;
-    /// Max steps from a narrow face to what is beside it. The narrow face at a corner of a rim is next to
+    /// Max steps from a narrow face to an adjacent wall. The narrow face at a corner of a rim is next to
     /// another narrow face.
     static constexpr int max_steps_beside = 2;
   };
@@ -122,15 +123,17 @@ struct DistanceTuning {
     /// Depth to which cells are counted before any decision; deeper ones are extrapolated. Each level takes
     /// four times as long to count.
     static constexpr int counted_depth = 3;
-    /// A region with fewer thin voxels, or fewer cells of counted_depth too thin for it, is a fold or a
-    /// particle smaller than a cell, and is not refined (further) for that.
+    /// A region with fewer thin voxels than the first value is a fold or a particle smaller than a cell and
+    /// is not refined. One with fewer cells too thin for counted_depth than the second is not refined beyond
+    /// that depth.
     static constexpr std::size_t min_thin_voxels = 4, min_deep_cells = 64;
-    /// Dense tets for each finest cell that holds a surface (1.7 cells for each squared cell of area): a wall
-    /// has such cells on both sides and little else, a gap has a thick part on both sides. Fitted to plates
-    /// and gaps.
+    /// Dense tets per finest cell that contains a surface (1.7 cells per squared cell of area). A wall has
+    /// such cells on both sides and little else; a gap has a thick part on both sides. Fitted to plates and
+    /// gaps.
     static constexpr double tets_per_wall_cell = 8, tets_per_gap_cell = 17;
-    /// Tets that fill a wall, for each squared thickness of its area: a plate of 100 x 100 x 1 simplified to
-    /// 7,000 tets has 0.5 % of them under 0.1 sr, to 8,000 none (areas come out 15 % too large here).
+    /// Number of tets that fill a wall, per squared thickness of its area. A plate of 100 x 100 x 1
+    /// simplified to 7,000 tets has 0.5 % of them below 0.1 sr, simplified to 8,000 none (computed areas are
+    /// 15 % too large).
     static constexpr double filling_tets_per_area = 0.66;
   };
 
@@ -138,10 +141,11 @@ struct DistanceTuning {
   struct NarrowPatches {
     /// Cells that should span the width of a patch.
     static constexpr double cells_to_width = 2;
-    /// Creases closer to each other than this fraction of their distance from a corner do more than meet in
-    /// it.
+    /// Creases whose distance is below this fraction of their distance from a common corner are narrow;
+    /// others merely meet there.
     static constexpr double corner_share = 0.4;
-    /// Spacing of the points tested along a crease, voxels: more find narrower patches and take longer.
+    /// Spacing of the points tested along a crease, voxels: smaller values find narrower patches and take
+    /// longer.
     static constexpr double spacing = 0.5;
     /// Approximate number of dense tets for each split cell: half of its eight parts are inside.
     static constexpr double tets_of_split = 42;

@@ -10,10 +10,10 @@ struct DomainTuning {
     /// their stars reach two cells from the surface; the third cell keeps the faces of the box away from
     /// them.
     static constexpr int margin = 3;
-    /// Cells along the longest side. Fewer hardly show a shape; a ball of the max has 1.5e9 dense tets,
-    /// nearly as many as can be numbered.
+    /// Cells along the longest side. Fewer hardly resolve a shape; a ball at the max resolution has 1.5e9
+    /// dense tets, nearly as many as can be numbered.
     static constexpr int min_resolution = 4, max_resolution = 4096;
-    /// Max cells along a side with all halvings, as make_grid_frame() needs them.
+    /// Max cells along a side after all halvings, as make_grid_frame() requires.
     static constexpr double max_cells = 1 << 18;
     /// Coordinates must resolve this fraction of a finest cell, or rounding them could invert a thin tet.
     static constexpr double share_of_rounding = 0x1p-20;
@@ -22,8 +22,8 @@ struct DomainTuning {
   };
 
   struct Refinement {
-    /// Levels below a voxel that cells may reach for sheets between surfaces and for thin labels (the guide,
-    /// Regions): each level takes four times the tets along a sheet.
+    /// Max levels of cells below a voxel for sheets between surfaces and for thin labels (the guide,
+    /// Regions): each level multiplies the tets along a sheet by four.
     static constexpr int max_levels = 3;
   };
 };

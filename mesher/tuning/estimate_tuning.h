@@ -6,8 +6,9 @@
 namespace tetwright {
 
 /// Predicted tets and memory; mesher/README.md, Tuned numbers, explains the terms. All were fitted to scans,
-/// parts and volumes like those of Measurements, Estimates of memory, which compares results with the truth.
-/// Areas are squared cells, volumes are cells. Sides of an interface count where they are meshed.
+/// parts and volumes like those in Measurements, Estimates of memory, which compares predictions with
+/// measurements. Areas are squared cells, volumes are cells. Sides of an interface count where they are
+/// meshed.
 struct EstimateTuning {
   /// Bytes.
   struct Memory {
@@ -24,17 +25,17 @@ struct EstimateTuning {
     static constexpr double per_voxel_read = 6;
     /// Per triangle while signed distances are computed; open parts also need a tree.
     static constexpr double per_triangle = 150, per_open_triangle = 300;
-    /// Factor for cells so small that they resolve the input's facets: 1.8 for a bunny at 780 cells along its
-    /// longest side.
+    /// Factor for cells so small that they resolve the input's facets: 1.8 measured for a bunny at 780 cells
+    /// along its longest side.
     static constexpr double faceted_factor = 2.5;
   };
 
   /// Adaptive cells.
   struct Adaptivity {
-    /// Dense tets per area, as a share of those of finest cells, where cells of twice the size are flat
-    /// enough and where those of four times the size are.
+    /// Dense tets per area, as a share of the number with finest cells, where the interface is flat enough
+    /// for cells of twice and of four times the size.
     static constexpr double tets_at_coarse = 0.15, tets_at_coarsest = 0.08;
-    /// Largest cells, in voxels, at which some of the interface of labels takes cells of twice and of four
+    /// Largest cells, in voxels, with which part of the interface of labels gets cells of twice and of four
     /// times the size: it curves on the scale of voxels.
     static constexpr double largest_with_coarse = 0.1, largest_with_coarsest = 0.025;
   };
@@ -47,25 +48,25 @@ struct EstimateTuning {
 
   /// Surfaces.
   struct Surfaces {
-    /// Dense tets of adaptive cells per area and side. The number tends to the first value where the material
-    /// is thick, and is half of it where the material has as much volume per area as the second value, cells.
-    /// On scans at 32 to 256 cells within 10 %, up to twice too high for flat ones.
+    /// Dense tets of adaptive cells per area and side: the first value where the material is thick, half of
+    /// it where the material's volume per area is the second value, cells. Within 10 % on scans at 32 to 256
+    /// cells; up to a factor of two too high for flat ones.
     static constexpr double tets_per_area = 29, half_full_thickness = 1.6;
-    /// Lattice tets per area on a side that is not meshed, adaptive and uniform.
+    /// Lattice tets per area on a side that is not meshed, for adaptive and for uniform cells.
     static constexpr double outside_tets_per_area = 14, outside_tets_per_area_uniform = 15.5;
-    /// Dense tets of uniform cells per area, beside those per cell, and with the outside kept.
+    /// Dense tets of uniform cells per area, in addition to those per cell, and the same with the outside
+    /// kept.
     static constexpr double cut_tets_per_area = 0.7, kept_outside_tets_per_area = 3;
   };
 
-  /// Samples of surfaces, which tell how flat interfaces are and which of their sides are meshed. More take
-  /// longer and are more accurate.
+  /// Samples of surfaces, which determine how flat interfaces are and which of their sides are meshed. More
+  /// take longer and are more accurate.
   struct Sampling {
     /// Samples of a surface, and of the interior of bodies along each axis.
     static constexpr int surface_samples = 256, volume_samples = 24;
     /// Distances at a surface sample are needed up to this, cells.
     static constexpr double reach = 12;
-    /// Max triangles used for distances; of finer surfaces only every second one, or every third, ... is
-    /// read.
+    /// Max triangles used for distances. For finer surfaces only every second, third, ... triangle is read.
     static constexpr std::size_t max_triangles = 1 << 20;
     /// Cells in front of and behind the plane of a sample, to find the side on which the surface is.
     static constexpr double plane_offset = 0.25;
@@ -73,23 +74,24 @@ struct EstimateTuning {
     static constexpr double side_offset = 0.1;
   };
 
-  /// Labels. Faces are those of voxels, as large as a squared cell.
+  /// Labels. Faces are voxel faces; their number is their area in squared cells.
   struct Labels {
     /// As for surfaces: dense tets per face and side. Voxel faces have about one and a half times the area of
     /// the interface.
     static constexpr double tets_per_face_side = 21.5, half_full_thickness = 0.6;
     /// Lattice tets on a side of a face that is not meshed.
     static constexpr double outside_tets_per_face = 10;
-    /// Dense tets of uniform cells per face to the outside, beside those per cell.
+    /// Dense tets of uniform cells per face to the outside, in addition to those per cell.
     static constexpr double tets_per_outer_face = 1;
     /// Tets per cell that is split where labels are thin, by whether its centre is in a label.
     static constexpr double dense_per_thin_cell = 96, lattice_per_thin_cell_outside = 30;
-    /// Cells smaller than this, voxels, resolve that smoothing reduces the area, to this share.
+    /// Smoothing reduces the area of interfaces to `smooth_share`; only cells below `small_cell`, voxels,
+    /// resolve that.
     static constexpr double small_cell = 0.75, smooth_share = 0.87;
   };
 
-  /// Tets per leaf, once regions are known, by its centre. Fitted to 23 inputs: within 5 % of the lattice's
-  /// tets, and within 6 % of the dense ones for one material, 16 % for several.
+  /// Tets per leaf, by the region at its centre. Fitted to 23 inputs: within 5 % for lattice tets; for dense
+  /// tets within 6 % with one material and 16 % with several.
   struct Leaves {
     /// Inside; outside and less than half a leaf from an interface.
     static constexpr double dense_inside = 12.03, dense_near = 6.2;

@@ -26,7 +26,7 @@ struct InputTuning {
     static constexpr std::size_t max_plain_queries = 16;
   };
 
-  /// Labels named in messages: enough to recognise a table of labels, few enough to read.
+  /// Max number of labels named in messages: enough to recognise a table of labels, few enough to read.
   struct Messages {
     static constexpr std::size_t max_listed_labels = 30;  ///< in one message
     static constexpr std::size_t max_named_labels = 20;   ///< with a finding of their own

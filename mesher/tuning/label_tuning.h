@@ -14,7 +14,8 @@ struct LabelGrains {
 };
 
 /// Smooth distances of labels between voxel centres; mesher/README.md, Tuned numbers, explains the terms. The
-/// guide, Labels, has the promises that these keep. A share is the part of a voxel that a label occupies.
+/// guide, Labels, lists the guarantees that depend on these. A share is the fraction of a voxel that a label
+/// occupies.
 struct LabelTuning {
   /// Distances from smoothed shares with back projection.
   struct Smoothing {
@@ -22,15 +23,18 @@ struct LabelTuning {
     static constexpr std::size_t max_labels = 1024;
     /// Samples of shares along each side of a cell; even, for the half cells at the border of the volume.
     static constexpr int samples_along = 4;
-    /// Two keep volumes of labels; each more reaches three voxels farther (LabelSmoother::reach).
+    /// Two preserve the volumes of labels; each additional one reaches three voxels farther
+    /// (LabelSmoother::reach).
     static constexpr int back_projections = 2;
-    /// Fraction of the missing share that one back projection adds: with all of it thin sheets overshoot.
+    /// Fraction of the missing share that one back projection adds: with 1, thin sheets overshoot.
     static constexpr float given_back = 0.7F;
-    /// Lead of the largest share over the second above which a sample point counts entirely for its label.
+    /// Lead of the largest share over the second largest above which a sample point counts entirely for its
+    /// label.
     static constexpr float sure_lead = 0.4F;
-    /// Min lead of a voxel's own share at its centre: keeps interfaces an eighth of a voxel away from it.
+    /// Min lead of a voxel's own share at its centre: keeps interfaces an eighth of a voxel away from the
+    /// centre.
     static constexpr float min_lead = 0.1F;
-    /// Min lead as a distance, voxels: the eighth that is promised.
+    /// Min lead as a distance, voxels: the guaranteed eighth.
     static constexpr float min_distance = 0.125F;
     /// Min lead at the middle of an edge across which two voxels of a label are connected, voxels: half of
     /// that at the centres.
@@ -43,62 +47,64 @@ struct LabelTuning {
     static constexpr float share_per_voxel = 0.8F;
     /// |2u - 1| is clamped to this, where the distance is LabelSmoother::band.
     static constexpr float max_excess = 0.95F;
-    /// Shares that a label lacks in a voxel of its own: from the first one the voxel's centre gets a depth,
-    /// which grows to `deepest` (voxels) at the second. Such a label is a rod or a single voxel, too narrow
-    /// for back projection; the depth is nearly that in a voxel of its own.
+    /// Shares that a label lacks in a voxel of its own. Above the first one, the voxel's centre gets a fixed
+    /// depth, which grows to `deepest` (voxels) at the second. Such a label is a rod or a single voxel, too
+    /// narrow for back projection; the depth puts the interface near the faces of the voxel itself.
     static constexpr float lack_from = 0.3F, lack_to = 0.8F, deepest = 0.8F;
   };
 
-  /// Growth of labels all around, which corrects their volumes.
+  /// Uniform growth of labels, which corrects their volumes.
   struct Growth {
     /// Max growth and shrinking, voxels: trades volumes of thin labels for their shapes.
     static constexpr float max_growth = 0.7F;
     /// Max rounds; growing a label changes its neighbours.
     static constexpr int max_rounds = 4;
-    /// Ratio of the change of volume to the expected one: faces of voxels have a larger area than the
-    /// interface, and enforced nodes do not move. Limits, since a label may have few faces.
+    /// Limits of the ratio of actual to expected volume changes, which is uncertain for labels with few
+    /// faces. It differs from 1 because voxel faces have a larger area than the interface and enforced nodes
+    /// do not move.
     static constexpr double min_response = 0.25, max_response = 1.25;
-    /// Fraction of the volume: the effect of smaller steps is dominated by noise.
+    /// Min expected change, as a fraction of the volume, from which the ratio is learnt: noise dominates
+    /// smaller ones.
     static constexpr double min_informative = 1e-3;
-    /// Labels of at most this many voxels are small: promises are for larger ones.
+    /// Labels of at most this many voxels are small: guarantees apply to larger ones.
     static constexpr double small_voxels = 1000;
-    /// Max deviations of volumes, relative to the label's voxels: 2 % is promised, less for small labels, and
-    /// meshing adds a few tenths of a percent.
+    /// Max deviations of volumes, relative to the label's voxels. 2 % is guaranteed, except for small labels,
+    /// and meshing adds a few tenths of a percent.
     static constexpr double tolerance = 0.004, tolerance_small = 0.02;
-    /// Voxels by which small labels may shrink relative to their neighbours. Slanted sheets of a voxel come
-    /// out too thick, and would tear.
+    /// Voxels by which small labels may shrink relative to their neighbours. Slanted sheets one voxel thick
+    /// become too thick, and would tear if shrunk farther.
     static constexpr double max_small_shrinking = 0.15;
-    /// Sweeps of Gauss-Seidel; the outside and labels of correct volume are not changed.
+    /// Gauss-Seidel sweeps; the outside and labels of correct volume are not changed.
     static constexpr int sweeps = 30;
   };
 
   /// Distances at any point.
   struct Field {
-    /// Cells along a voxel from which the promises hold.
+    /// Min cells per voxel edge for which the guarantees hold.
     static constexpr double promised_cells_per_voxel = 2;
     /// Share of the band from which a distance counts as clamped: rounding and interpolation give slightly
     /// less than the band.
     static constexpr double clamped_share = 0.98;
-    /// Cells along a side below which ranges of cells are not tested as a whole: that does not pay.
+    /// Ranges with fewer cells along a side are not tested as a whole, since that does not pay.
     static constexpr int small_range = 8;
   };
 
   /// Labels thinner than cells resolve.
   struct Thickness {
-    /// Cells that a label must be thick.
+    /// Thickness that a label must have, cells.
     static constexpr double min_cells = 2;
     /// Max voxels along a side of a box of two cells: its sides are counted in bytes.
     static constexpr int max_side = 200;
-    /// Max voxels of a box that is sought beyond the volume. Larger boxes belong to cells much larger than
-    /// voxels, where gaps this small hardly matter.
+    /// Max voxels of a box for which positions partly outside the volume are tried. Larger boxes belong to
+    /// cells much larger than voxels, where gaps this small hardly matter.
     static constexpr int max_tried = 512;
     /// Max distance of interfaces from the centre of a thin voxel, voxels.
     static constexpr double reach = 0.75;
-    /// Two cells per voxel are too few for islands hardly larger than a voxel; this many or more are enough.
+    /// Cells per voxel that suffice for islands hardly larger than a voxel, for which two are too few.
     static constexpr double cells_per_island_voxel = 8;
-    /// Islands of fewer voxels would have no shape with two cells per voxel.
+    /// Islands of fewer voxels are small: two cells per voxel would not resolve their shape.
     static constexpr std::size_t small_island = 8;
-    /// Max thin voxels of small islands. Each takes thousands of tets, so this is not for noise.
+    /// Max thin voxels of small islands to be refined. Each takes thousands of tets, so noise is not refined.
     static constexpr std::size_t max_island_voxels = 32;
   };
 };

@@ -14,10 +14,10 @@ namespace tetwright {
 /// A mesh with everything that constrains its operations: a grid of its surfaces, the volumes of its
 /// materials and the frozen vertices.
 struct ConstrainedMesh {
-  /// Takes the mesh over. Does not build the grid: whoever works on the mesh does.
+  /// Takes ownership of the mesh. Does not build the grid; callers do so before operations.
   ///
   /// \param name the mesh's name in messages.
-  /// \param frozen one value for each point, nonzero: frozen; empty: no point is.
+  /// \param frozen one value for each point, nonzero if frozen; empty: no point is frozen.
   /// \param fix_boundary freezes all points of the boundary and the interfaces.
   /// \param keep_volumes bounds the volume of each material for as long as this object exists.
   /// \throws InputError if the sum of the tets' signed volumes is not positive.
@@ -27,7 +27,7 @@ struct ConstrainedMesh {
   ConstrainedMesh& operator=(const ConstrainedMesh&) = delete;
 
   /// Copies the patches of interface faces from the grid, which keeps them during operations, to the mesh.
-  /// Call it before the grid is rebuilt and before the mesh is taken out.
+  /// Call this before rebuilding the grid and before taking the mesh.
   void keep_patches();
 
   EditableMesh mesh;

@@ -10,7 +10,7 @@
 
 namespace tetwright {
 
-/// Target lengths of edges: those of a size field, within a factor, and bounds that hold everywhere. Working
+/// Bounds on edge lengths: the target length of a size field, within a factor, and global bounds. Working
 /// coordinates. Const functions may be called concurrently.
 class EdgeSizes {
  public:
@@ -31,7 +31,7 @@ class EdgeSizes {
   void allow_shorter() { shorter_allowed_ = true; }
 
   bool has_target_length() const { return target_length_ != nullptr; }
-  /// Whether there are bounds beside the target length.
+  /// Whether there are bounds in addition to the target length.
   bool has_bounds() const { return min_edge_ > 0 || std::isfinite(max_edge_); }
   /// \pre has_target_length().
   double target_length(const Vec3& at) const {
@@ -47,8 +47,8 @@ class EdgeSizes {
                ? std::max(min_edge_, Lengths::short_edge * target_length(middle))
                : min_edge_;
   }
-  /// Ratios of an edge's length to its max length, and of its min length to its length: above 1 where the
-  /// edge violates a bound, by that factor.
+  /// Ratios of an edge's length to its max length, and of its min length to its length. A value above 1 is
+  /// the factor by which the edge violates the bound.
   struct Excess {
     double longer, shorter;
   };

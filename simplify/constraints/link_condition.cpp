@@ -148,7 +148,7 @@ bool LinkCondition::vertices_agree() const {
   for (std::size_t p = 0; p < common_.size(); ++p)
     b_on_junction |= p != b_ && common_[p].interfaces.on_junction();
 
-  // ω, and the edges of the links that end in it.
+  // Test ω, and the edges of the links that end in it.
   if (a_on_boundary_ && b_on_boundary_ && boundary_at_a_[b_] == 0) return false;
   const bool ab_on_interface = star.interface_count[b_] != 0;
   if (ab_on_interface && a_on_junction_ && b_on_junction && !ab_on_junction) return false;

@@ -14,7 +14,7 @@ namespace tetwright {
 /// interface and junction curve: Lk(a) ∩ Lk(b) = Lk(ab) in the complexes K, I and J of README.md, Topology
 /// (Dey, Edelsbrunner, Guha & Nekhayev 1999; Thomas & Natarajan 2011). Changes nothing.
 ///
-/// Reads the star of b beside that of a. Reuses its memory; one object for each worker.
+/// Reads the stars of a and b. Reuses its memory; one object for each worker.
 class LinkCondition {
  public:
   /// \param grid has the patches of interface faces.
@@ -53,10 +53,10 @@ class LinkCondition {
   };
 
   void begin(const EditableMesh& mesh, const SurfaceGrid& grid, const Star& star, std::size_t b);
-  /// Collects what follows from a's interface triangles alone.
+  /// Collects data that depends only on a's interface triangles.
   void read_interfaces_of_a();
-  /// Walks the star of b. False as soon as a tet, triangle or edge is in both links but not in that of ab,
-  /// and if the star is too large to test.
+  /// Walks the star of b. False if a triangle or edge is in both links but not in that of ab, or if the star
+  /// is too large to test.
   bool walk_star_of_b();
   LinkTriangle link_triangle(Index tet, int slot);
   /// Queues the neighbours of a tet at b and counts its interface triangles at b.
@@ -82,7 +82,7 @@ class LinkCondition {
   LocalNumbers local_of_a_;                   ///< local numbers by id
   LocalNumbers tet_numbers_;
   std::vector<Index> walk_;  ///< the tets at b
-  /// Interface triangles at edges from b to points outside a's link: they matter only for whether b is on a
+  /// Interface triangles at edges from b to points outside a's link. They only determine whether b is on a
   /// junction curve.
   LocalNumbers other_points_;
   std::vector<EdgeSheets> other_interfaces_;

@@ -76,7 +76,7 @@ SurfaceGrid::Box SurfaceGrid::box_of(const MeshTriangle& t) {
 
 SurfaceGrid::Cell3 SurfaceGrid::cell_at(const Vec3& p) const {
   const auto axis = [&](int i) {
-    // Clamp: a point far outside the box that the grid was built for still needs a cell.
+    // Clamp, so that a point far outside the grid's initial box still has a cell.
     return static_cast<std::int32_t>(std::floor(std::clamp((p[i] - origin_[i]) * to_cell_, -1e9, 1e9)));
   };
   return {axis(0), axis(1), axis(2)};
@@ -129,8 +129,8 @@ void SurfaceGrid::build(const EditableMesh& mesh, double min_cell) {
     sum += extent;
     largest = std::max(largest, extent);
   }
-  // Twice the mean extent: a triangle touches few cells, and a cell lists few triangles even when they have
-  // grown.
+  // Twice the mean extent: a triangle touches few cells, and a cell lists few triangles even after triangles
+  // have grown.
   const double mean = records_.empty() ? 1 : sum / static_cast<double>(records_.size());
   const double size = std::max({2 * mean, largest / Grid::max_cells_across, min_cell});
   origin_ = low;
@@ -202,7 +202,8 @@ bool SurfaceGrid::hits_standing(const MeshTriangle& t, std::span<const std::uint
   for_cells(t, [&](const Cell3& c) {
     if (hit) return;
     for (const Entry& e : cells_[slot(c)].entries) {
-      // Test a pair that shares several cells only in the one with the low corner of their common box.
+      // Test a pair that shares several cells only in the cell with the low corner of the intersection of
+      // their boxes.
       if (std::max(low.x, e.low.x) != c.x || std::max(low.y, e.low.y) != c.y ||
           std::max(low.z, e.low.z) != c.z)
         continue;
@@ -291,7 +292,7 @@ bool SurfaceGrid::apart(const Edit& first, const Edit& second) {
 }
 
 void SurfaceGrid::take_records(Edit& edit) {
-  for (Added& a : edit.added) sort_ids(a.triangle);  // a new point now has its number
+  for (Added& a : edit.added) sort_ids(a.triangle);  // a new point has its final number now
   // Added triangles reuse the records of removed ones.
   const std::size_t reused = std::min(edit.removed.size(), edit.added.size());
   edit.added_records.assign(edit.removed_records.begin(),

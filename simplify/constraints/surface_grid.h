@@ -16,12 +16,12 @@ namespace tetwright {
 class SurfaceSamples;
 
 /// The boundary and interface triangles of an EditableMesh with their coordinates, in a hashed spatial grid.
-/// Its test against self-intersection is explicit, since positive tets alone do not prevent one: two parts of
-/// a surface may pass through each other from outside. Also keeps the patches of interface faces.
+/// It tests for self-intersection explicitly, because positive tets alone do not prevent it: two parts of a
+/// surface may pass through each other from outside. Also keeps the patches of interface faces.
 ///
-/// Concurrency: nobody writes while operations are decided. While they are committed, each writes the records
-/// of its own triangles, and grid cells, each guarded by a short lock. The order of a cell's records does not
-/// matter, since any hit decides.
+/// Concurrency: nothing is written while operations are decided. During commit, each operation writes the
+/// records of its own triangles and the grid cells that they touch, each guarded by a short lock. The order
+/// of a cell's records does not matter, since any intersection decides.
 class SurfaceGrid {
  public:
   /// A triangle that an edit adds.
@@ -30,7 +30,7 @@ class SurfaceGrid {
     PatchId patch;
     RegionId inside = outside_id, across = outside_id;  ///< regions on its two sides
   };
-  /// A sample of the input's surface that an added triangle takes over (SurfaceSamples).
+  /// A sample of the input's surface that is reassigned to an added triangle (SurfaceSamples).
   struct ReassignedSample {
     std::uint32_t sample;
     std::uint32_t added;  ///< index in Edit::added
@@ -76,7 +76,7 @@ class SurfaceGrid {
   /// \param new_points new numbers by old ones.
   void rebuild(const EditableMesh& mesh, double min_cell, const std::vector<Index>& new_points);
   std::size_t record_count() const { return records_.size(); }
-  /// Samples that the triangles own from now on, or null; they must outlive the last edit.
+  /// Sets the samples that the triangles own, or null; they must outlive the last edit.
   void set_samples(SurfaceSamples* samples) { samples_ = samples; }
   const SurfaceSamples* samples() const { return samples_; }
 
@@ -97,14 +97,14 @@ class SurfaceGrid {
   /// Whether no added triangle of one edit intersects one of the other or is nearly folded onto it.
   /// \pre Both edits have passed test().
   static bool apart(const Edit& first, const Edit& second);
-  /// Replaces triangles without any test, after points were moved from outside.
+  /// Replaces triangles without any test, after points were moved by other means than operations.
   /// \pre No task runs.
   void replace(Edit& edit);
 
-  /// Assigns records to the added triangles of a tested edit and takes back those of the removed ones. One
+  /// Assigns records to the added triangles of a tested edit and frees the records of the removed ones. One
   /// thread at a time, before commit().
   void take_records(Edit& edit);
-  /// Call it when all edits of a batch are committed.
+  /// Call this after all edits of a batch are committed.
   void end_batch() { free_records_.end_batch(); }
   /// Carries out an edit. Safe concurrently for edits that share no triangle.
   void commit(const Edit& edit);
@@ -125,8 +125,7 @@ class SurfaceGrid {
     std::int32_t x, y, z;
     bool operator==(const Cell3&) const = default;
   };
-  /// A triangle's bounding box, rounded outwards: it separates most pairs, whose triangles then need not be
-  /// read.
+  /// A triangle's bounding box, rounded outwards. It separates most pairs without reading their triangles.
   struct Box {
     std::array<float, 3> low, high;
     bool meets(const Box& other) const {

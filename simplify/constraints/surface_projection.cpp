@@ -77,7 +77,7 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
     std::size_t j = i + 1;
     while (j < edges.size() && edges[j].key == edges[i].key) ++j;
     const auto p = static_cast<Index>(edges[i].key >> 32), q = static_cast<Index>(edges[i].key);
-    // A given surface with patches provides the feature edges itself.
+    // A given surface with patches provides its own feature edges.
     if ((j - i != 2 || (!given_patches_ && edges[i].patch != edges[i + 1].patch)) && complete(p) &&
         complete(q)) {
       const Index a = points.number(p), b = points.number(q);

@@ -17,23 +17,23 @@ namespace tetwright {
 class SurfaceProjection {
  public:
   SurfaceProjection() = default;
-  /// Copies what it needs: the mesh may change afterwards.
+  /// Copies its data: the mesh may change afterwards.
   ///
-  /// \param given reference surface, may be null; must outlive this object. One without patches means that
-  ///   the faces' patch borders are accurate to a cell only.
+  /// \param given reference surface, may be null; must outlive this object. If it has no patches, the patch
+  ///   borders of the mesh are accurate to a cell only.
   SurfaceProjection(const EditableMesh& mesh, const ReferenceSurface* given)
       : SurfaceProjection(mesh, mesh.interface_faces(), given, [](Index) { return true; }) {}
-  /// Restricted to these faces.
+  /// As above, restricted to these faces.
   ///
-  /// \param complete whether all interface faces at a point are among `faces`; junction curves are searched
-  ///   only between such points.
+  /// \param complete whether all interface faces at a point are among `faces`; junction curves are found only
+  ///   between such points.
   SurfaceProjection(const EditableMesh& mesh, const std::vector<InterfaceFace>& faces,
                     const ReferenceSurface* given, const std::function<bool(Index)>& complete);
 
-  /// Whether some face has a patch other than 0, unless the given surface has none: planes and feature edges
-  /// are then kept exactly.
+  /// Whether some face has a patch other than 0; false if the given surface has no patches. If true, planes
+  /// and feature edges are kept exactly.
   bool has_patches() const { return has_patches_; }
-  /// A point of a patch of the interface between two regions that is nearest to p, or nearly so, within
+  /// The nearest or nearly nearest point to p on a patch of the interface between two regions, within
   /// `max_distance`.
   std::optional<Vec3> onto_surface(const Vec3& p, RegionId first, RegionId second, PatchId patch,
                                    double max_distance) const;

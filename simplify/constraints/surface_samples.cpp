@@ -231,7 +231,7 @@ SurfaceSamples::SurfaceSamples(const EditableMesh& mesh, std::size_t records, co
         const ProjectionTree::Item& from = surface_.items()[places[i].item];
         const bool given = InputSurface::is_given(from);
         const Vec3 outwards = normal(surface_, from);
-        // Skip the other side of a thin wall, and other interfaces.
+        // Skip the opposite side of a thin wall, and other interfaces.
         const auto accepts = [&](const ProjectionTree::Item& item) {
           const Kind& kind = kinds_[item.kind[0]];
           if (!given) return kind == InputSurface::kind_of(from);
@@ -296,7 +296,7 @@ bool SurfaceSamples::choose_new_owners(SurfaceGrid::Edit& edit, double max_dista
         }
       }
       const double d = std::sqrt(best2);
-      // Compare as stored: a sample whose triangle does not move is no farther than before.
+      // Compare in stored precision, so that a sample whose triangle does not move is no farther than before.
       if (d > max_distance && static_cast<float>(d) > sample.distance) return false;
       edit.reassigned.push_back({s, best, static_cast<float>(d)});
     }
@@ -316,7 +316,7 @@ bool SurfaceSamples::stays_near_surface(SurfaceGrid::Edit& edit, double max_dist
     if (!(longest2 > spacing_ * spacing_)) return true;
     const int steps = static_cast<int>(std::ceil(std::sqrt(longest2) / spacing_));
     const Vec3 u = (p[1] - p[0]) / steps, v = (p[2] - p[0]) / steps, n = u.cross(v);
-    // Most of them are near a sample of the triangle, which is on the surface.
+    // Most of these points are near a sample of the triangle, which is on the surface.
     const std::size_t row = static_cast<std::size_t>(steps) + 1;
     edit.near_sample.assign(row * row, 0);
     if (n.squaredNorm() > 0) {
@@ -358,8 +358,8 @@ bool SurfaceSamples::stays_near_surface(SurfaceGrid::Edit& edit, double max_dist
       allowed = std::max(allowed, static_cast<double>(samples_[h.sample].distance));
     return allowed > max_distance && near(p);
   };
-  // The position of a vertex in the removed triangles, if it is in one: tells what is new of an added
-  // triangle.
+  // The position of a vertex in the removed triangles, if it is in one: shows which parts of an added
+  // triangle are new.
   const auto place_before = [&](Index id) -> std::optional<Vec3> {
     for (const MeshTriangle& t : edit.removed)
       for (int k = 0; k < 3; ++k)

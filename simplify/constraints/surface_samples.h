@@ -19,8 +19,9 @@ namespace tetwright {
 /// The surface that a mesh represents, as triangles. Working coordinates.
 class InputSurface {
  public:
-  /// Uses the given surface, and those parts of the mesh's own boundary and interfaces that are far from it
-  /// (caps of holes, layers, the box of a meshed outside). Without a given surface it uses all of them.
+  /// Uses the given surface, and the parts of the mesh's own boundary and interfaces that are far from it
+  /// (caps of holes, layers, the box of a meshed outside). Without a given surface, uses the mesh's whole
+  /// boundary and interfaces.
   ///
   /// \param mesh before any operation.
   /// \param given triangles wound outwards, input units; may be null.
@@ -39,14 +40,14 @@ class InputSurface {
   static Kind kind_of(const ProjectionTree::Item& item);
   /// Distance, working coordinates, within which mesh and input correspond.
   double reach() const { return reach_; }
-  /// Finds the triangles that no part of the input mesh is near, which deviation() leaves out. Parallel.
+  /// Finds the triangles that no part of the input mesh is near; deviation() ignores them. Parallel.
   /// \pre `mesh` is unchanged.
   void find_hidden(const EditableMesh& mesh);
   /// Two-sided distance between the current mesh's surface and this one, with proven bounds; input units.
   /// Parallel.
   ///
-  /// \param mesh the mesh that this surface was made for.
-  /// \param progress ends it as it ends surface_deviation(); may be null.
+  /// \param mesh the mesh for which this surface was made.
+  /// \param progress may end the computation early, as in surface_deviation(); may be null.
   DeviationReport deviation(const EditableMesh& mesh, const Progress* progress) const;
   /// A boundary or interface face, by its index in mesh.interface_faces(), that is far from this surface, or
   /// nearest to a point of it that is far from all faces; `place` is that point.
@@ -55,11 +56,11 @@ class InputSurface {
     std::optional<Vec3> place;
   };
   /// The faces with a distance above `limit`, working coordinates. Parallel.
-  /// \pre `mesh` is the one that this surface was made for.
+  /// \pre This surface was made for `mesh`.
   std::vector<FarFace> far_faces(const EditableMesh& mesh, double limit) const;
 
  private:
-  /// The surface that a mesh is compared with: without the triangles of find_hidden().
+  /// The surface with which a mesh is compared: without the triangles found by find_hidden().
   ProjectionTree shown() const;
   /// Accuracy of the distances, working coordinates.
   double accuracy() const;
@@ -75,11 +76,11 @@ class InputSurface {
 /// "Multiresolution decimation based on global error"), and its vertices are fitted to them. Working
 /// coordinates.
 ///
-/// Every operation reassigns the samples of the triangles that it removes to the nearest added triangles of
-/// the same kind.
+/// Every operation reassigns the samples of its removed triangles to the nearest added triangles of the same
+/// kind.
 ///
-/// Concurrency: nobody writes while operations are decided; while they are committed, each writes the lists
-/// of its own triangles.
+/// Concurrency: nothing is written while operations are decided. During commit, each operation writes the
+/// lists of its own triangles.
 class SurfaceSamples {
  public:
   static constexpr std::uint32_t none = 0xffffffffu;
@@ -88,8 +89,8 @@ class SurfaceSamples {
   ///
   /// \param records number of the grid's records.
   /// \param surface must outlive this object.
-  /// \param edge target edge of the simplified mesh: one of its triangles gets some ten samples, vertices of
-  ///   the input first.
+  /// \param edge target edge length of the simplified mesh: each of its triangles gets about ten samples,
+  ///   vertices of the input first.
   /// \param scale factor on `edge`, by position.
   SurfaceSamples(
       const EditableMesh& mesh, std::size_t records, const InputSurface& surface, double edge,
@@ -101,7 +102,7 @@ class SurfaceSamples {
   /// the surface than both `max_distance` and the worst of these samples. Safe concurrently while nothing is
   /// committed.
   bool reassign_samples(SurfaceGrid::Edit& edit, double max_distance) const;
-  /// Max distance between the points at which added triangles are tested from now on.
+  /// Sets the max distance between the points at which added triangles are tested.
   void set_spacing(double spacing) { spacing_ = spacing; }
 
   /// Calls f(position, its distance from the triangle) for each sample of a triangle.

@@ -11,11 +11,11 @@
 
 namespace tetwright {
 
-/// Keeps the volume of every region within a share of its initial value. Error(op) only bounds each single
-/// operation, and many small losses add up: a simplified ball lies inside the ball.
+/// Keeps the volume of every region within a fraction of its initial value. Error(op) only bounds single
+/// operations, and many small losses add up: a simplified ball lies inside the original.
 class VolumeLedger {
  public:
-  /// Sets the bounds to `share` of the current volumes.
+  /// Bounds the changes to the fraction `share` of the current volumes.
   /// \pre No task runs.
   void open(const EditableMesh& mesh, double share) {
     allowed_.assign(mesh.region_count(), 0);
@@ -36,14 +36,14 @@ class VolumeLedger {
     }
     return true;
   }
-  /// Books the changes. One thread at a time.
+  /// Adds the changes. One thread at a time.
   template <class Changes>
   void commit(const Changes& changes) {
     for (const VolumeChange& c : changes)
       if (c.region != outside_id && !allowed_.empty()) net_[c.region] += c.volume;
   }
 
-  /// Used share of its bounds for the worst region: 1 is all.
+  /// Max over the regions of the change as a fraction of its bound.
   /// \pre No task runs.
   double utilization() const {
     double largest = 0;

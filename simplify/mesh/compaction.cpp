@@ -59,7 +59,7 @@ void MeshCompaction::move_points(const std::vector<Index>& order, const std::vec
     std::vector<Index> originals(mesh_.positions_.size());
     std::iota(originals.begin(), originals.end(), Index{0});
     for (std::size_t i = 0; i < order.size(); ++i)
-      originals[i] = new_point[mesh_.originals_[order[i]]];  // such points are frozen, never removed
+      originals[i] = new_point[mesh_.originals_[order[i]]];  // such points are frozen and never removed
     mesh_.originals_ = std::move(originals);
   }
   mesh_.interface_patches_ = renumbered(mesh_.interface_patches_, new_point);
@@ -88,7 +88,7 @@ std::vector<Index> MeshCompaction::number_tets(const std::vector<Index>& new_poi
 
 void MeshCompaction::move_tets(const std::vector<Index>& new_point, const std::vector<Index>& new_tet,
                                std::size_t live, std::size_t spare) {
-  // Move one array after the other: the old and new tets together are the peak of the simplifier's memory.
+  // Move one array after the other: memory peaks while both old and new tets exist.
   const std::size_t slots = mesh_.tets_.size();
   {
     std::vector<TetRecord> tets(live + spare, {dead_tet, {}});

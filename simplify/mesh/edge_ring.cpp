@@ -47,7 +47,7 @@ Outcome EdgeRing::gather(const EditableMesh& mesh, Index tet, int edge, std::siz
     }
     if (tets.size() == limit) return Outcome::too_large;
     const Index p = fourth(next, points.back());
-    if (p == no_index) return Outcome::too_large;  // the input repeats a tet: there is no ring
+    if (p == no_index) return Outcome::too_large;  // a repeated tet in the input: no ring exists
     leave = points.back();                         // next: across (a, b, p)
     add(next);
     points.push_back(p);

@@ -74,7 +74,7 @@ std::size_t EditableMesh::touching_points() const {
 }
 
 void EditableMesh::make_room(std::size_t tets, std::size_t points) {
-  // Vectors grow geometrically, so that few of these resizes copy.
+  // Vectors grow geometrically, so few of these resizes copy.
   if (const std::size_t have = free_tets_.available(); have < tets) {
     const std::size_t more = std::max(tets - have, Slots::growth);
     if (tets_.size() + more >= FaceLink::max_tets) throw OutputError("more than the 2^30 tets possible");

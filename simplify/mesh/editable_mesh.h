@@ -21,24 +21,23 @@ struct SlotNumbers {
   std::vector<Index> points, tets;
 };
 
-/// The mesh while it is simplified: a tet knows its neighbours across faces, a point knows one incident tet.
-/// No array is reallocated while workers run.
+/// The mesh during simplification: each tet has links to its neighbours across faces, each point to one
+/// incident tet. No array is reallocated while workers run.
 ///
-/// Concurrency (README.md has the whole protocol): nobody writes while operations are decided. While they are
-/// committed, each writes the tets that it changes, and across a hull face the link of the tet outside; all
-/// points of these tets and faces are in its write set (Reservations). WriteRule asserts it.
+/// Concurrency (README.md has the whole protocol): nothing is written while operations are decided. During
+/// commit, each operation writes the tets that it changes, and the links of tets across the cavity's hull;
+/// all points of these tets and faces are in its write set (Reservations). WriteRule asserts this.
 class EditableMesh {
  public:
-  /// Takes the mesh over. Working coordinates are shifted along each axis on which that is exact for every
-  /// point, and scaled by a power of two; `to_mesh` restores the input coordinates bit by bit. Flat and
-  /// negative tets are accepted as they are. A point whose star falls into parts not joined by faces becomes
-  /// one frozen point for each part, and one point again in `to_mesh`. Patches are those of the mesh's
-  /// interfaces.
+  /// Takes ownership of the mesh. Working coordinates are shifted along each axis for which that is exact for
+  /// every point, and scaled by a power of two; `to_mesh` restores the input coordinates bit by bit. Flat and
+  /// negative tets are accepted. A point whose star consists of parts not joined by faces is split into one
+  /// frozen point for each part; `to_mesh` merges them again. Patches come from the mesh's interfaces.
   ///
   /// \param name the mesh's name in messages.
   /// \throws InputError if a coordinate is not finite; if a tet repeats a point; if a face has more than two
-  ///   tets, or two on one side (such a mesh has no neighbours to walk by); if `interfaces` is neither empty
-  ///   nor what the tets imply.
+  ///   tets, or two on one side (neighbours are then undefined); if `interfaces` is neither empty nor what
+  ///   the tets imply.
   EditableMesh(TetMesh&& mesh, const std::string& name);
 
   /// Returns the mesh without dead tets and unused points, in input units, with its interfaces. Empties this
@@ -56,10 +55,10 @@ class EditableMesh {
   const WorkingSpace& space() const { return space_; }
   Vec3 snap(const Vec3& working) const { return space_.snap(working); }
 
-  /// Whether the point is never moved nor removed. A boundary or interface face with three frozen points
-  /// stays.
+  /// Whether the point is never moved or removed. A boundary or interface face with three frozen points is
+  /// kept.
   bool frozen(Index point) const { return any_frozen() && frozen_[point] != 0; }
-  /// Whether the tet stays as it is: all its points are in the mask of freeze(), or belong to tets at a
+  /// Whether the tet is kept unchanged: all its points are in the mask of freeze() or belong to tets at a
   /// touching point.
   bool frozen_tet(Index t) const {
     if (!any_frozen()) return false;
@@ -67,8 +66,8 @@ class EditableMesh {
     return (frozen_[p[0]] & frozen_[p[1]] & frozen_[p[2]] & frozen_[p[3]] & with_tets) != 0;
   }
   bool any_frozen() const { return !frozen_.empty(); }
-  /// Freezes the points p with a nonzero mask[p], and the tets with such points only. Points where parts
-  /// touch without a common face are frozen already, with all their tets.
+  /// Freezes the points p with a nonzero mask[p], and the tets with only such points. Points where parts
+  /// touch without a common face are already frozen, with all their tets.
   ///
   /// \param mask by point, in the input's order.
   /// \pre No task runs; before compact().
@@ -76,9 +75,10 @@ class EditableMesh {
   /// Freezes all points of boundary and interfaces, and so their faces.
   /// \pre No task runs.
   void freeze_interfaces();
-  /// Number of positions at which parts touch without a common face, however many points each has.
+  /// Number of positions at which parts touch without a common face; each counts once, whatever its number of
+  /// points.
   std::size_t touching_points() const;
-  /// The point that a copy was split off from; the point itself for all others.
+  /// The original of a copy made by splitting; for all other points, the point itself.
   Index original(Index point) const { return point < originals_.size() ? originals_[point] : point; }
   /// Whether interface faces have patches other than 0; SurfaceGrid keeps these.
   bool interface_patches() const { return !interface_patches_.empty(); }
@@ -119,12 +119,12 @@ class EditableMesh {
   }
   void prefetch_point(Index p) const { __builtin_prefetch(&positions_[p]); }
 
-  // Writing: while no task runs, or by the winner whose write set has the points written.
+  // Writing: while no task runs, or by a winner, at points of its write set.
   void set_position(Index point, const Vec3& position) {
     WriteRule::check(point);
     positions_[point] = position;
   }
-  /// Only where the old incident tet dies: then there is one writer.
+  /// Call this only if the old incident tet is removed, so that there is a single writer.
   void set_incident_tet(Index point, Index tet) {
     WriteRule::check(point);
     incident_tets_[point] = tet;
@@ -132,8 +132,8 @@ class EditableMesh {
   /// Marks that the point's star has changed in the current round.
   void touch(Index point) {
     WriteRule::check(point);
-    // Several threads may touch a point at a time. Relaxed, since all store the same value and nobody reads
-    // it meanwhile.
+    // Several threads may touch a point at the same time. Relaxed, since all store the same value and no
+    // thread reads it meanwhile.
     std::atomic_ref<std::uint32_t>(touched_[point]).store(round_, std::memory_order_relaxed);
   }
   void set_points(Index t, const Tet& points) {
@@ -166,7 +166,8 @@ class EditableMesh {
     WriteRule::check();
     live_ = static_cast<std::size_t>(static_cast<std::int64_t>(live_) + change);
   }
-  /// Free slots for operations that add; make_room() adds slots, in small steps, if fewer than that are free.
+  /// Free slots for operations that add elements. make_room() adds slots, in small steps, if fewer than
+  /// requested are free.
   FreeSlots& free_tets() { return free_tets_; }
   FreeSlots& free_points() { return free_points_; }
   void make_room(std::size_t tets, std::size_t points);
@@ -174,19 +175,19 @@ class EditableMesh {
   /// Clears all touched marks.
   void begin_round() { ++round_; }
   /// Removes dead tets and points and renumbers both along a space-filling curve, so that neighbours in space
-  /// are near in memory.
+  /// are close in memory.
   ///
-  /// \param spare_tets, spare_points free slots left at the end for operations that add.
-  /// \param numbers gets the new numbers of all slots; may be null.
+  /// \param spare_tets, spare_points free slots left at the end for operations that add elements.
+  /// \param numbers receives the new numbers of all slots; may be null.
   void compact(std::size_t spare_tets, std::size_t spare_points, SlotNumbers* numbers = nullptr);
   /// Reserves room for twice as many slots, so that growth copies nothing; memory is committed only where it
   /// is written.
   void reserve_twice();
-  /// Share of dead slots among the slots used so far.
+  /// Fraction of dead slots among the slots used so far.
   double dead_share() const;
-  /// The faces between two regions, outside being one, each once. Parallel; the order does not depend on the
-  /// threads. The patches of interface faces are the input's, so they are valid only before the first
-  /// operation.
+  /// The faces between two regions, outside included, each once. Parallel; the order does not depend on the
+  /// number of threads. Patches of interface faces are those of the input, so they are valid only before the
+  /// first operation.
   std::vector<InterfaceFace> interface_faces() const;
   /// Sets the patches of interface faces for to_mesh(): SurfaceGrid keeps them during operations.
   void set_interface_patches(FacePatches&& patches) { interface_patches_ = std::move(patches); }
@@ -198,8 +199,8 @@ class EditableMesh {
   double diagonal() const;
   /// Whether all tets are positive, by exact sign.
   bool all_positive() const;
-  /// Checks every invariant of the links: neighbours mutual, incident tets right, faces equal, live count
-  /// right. For tests.
+  /// Checks every invariant of the links: mutual neighbours, equal faces, valid incident tets, correct live
+  /// count. For tests.
   bool links_consistent() const;
 
  private:

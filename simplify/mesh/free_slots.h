@@ -8,12 +8,12 @@
 
 namespace tetwright {
 
-/// The free slots of an array: the ones given back, the last first, then unused ones at its end. A slot given
-/// back becomes free only after end_batch(): before that, two operations of one batch could write it. One
+/// The free slots of an array: slots given back, last in first out, then unused ones at its end. A slot given
+/// back becomes free only after end_batch(), since otherwise two operations of one batch could write it. One
 /// thread at a time.
 class FreeSlots {
  public:
-  /// Makes the slots [first, end) the free ones.
+  /// Resets the free slots to [first, end).
   void reset(std::size_t first, std::size_t end) {
     free_.clear();
     given_back_.clear();
@@ -33,7 +33,7 @@ class FreeSlots {
     return slot;
   }
   void give_back(Index slot) { given_back_.push_back(slot); }
-  /// Frees the slots given back: nobody writes them any more.
+  /// Frees the slots given back, which are no longer written.
   void end_batch() {
     free_.insert(free_.end(), given_back_.begin(), given_back_.end());
     given_back_.clear();

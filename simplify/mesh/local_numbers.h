@@ -51,7 +51,7 @@ class LocalNumbers {
   std::size_t home(Index key) const { return (key * std::uint64_t{0x9e3779b97f4a7c15} >> 32) & mask_; }
   /// Doubles the table and returns the free slot for `key`.
   std::size_t grow(Index key);
-  /// Clears all stamps after 2^31 keys, so that no old one looks current.
+  /// Clears all stamps after 2^31 keys, so that no old stamp looks current.
   void restart();
 
   std::vector<Slot> slots_;

@@ -18,7 +18,8 @@ namespace {
 
 using Grains = SimplifyTuning::Grains;
 
-/// Lowers `smallest` to `value`: messages name the first finding in the file, whichever thread makes it.
+/// Lowers `smallest` to `value`, so that messages name the first finding in the file, whichever thread makes
+/// it.
 void lower(std::atomic<Index>& smallest, Index value) {
   Index known = smallest.load();
   while (value < known && !smallest.compare_exchange_weak(known, value)) {
@@ -104,7 +105,7 @@ void MeshBuilder::link_faces() {
                     [&](const Triangle&, std::span<const Buckets::Use> uses) {
                       if (uses.size() == 1) return;
                       const Buckets::Use &s = uses[0], &u = uses[1];
-                      // Two positive tets on opposite sides of a face list it with opposite orientation.
+                      // Positive tets on opposite sides of a face list it with opposite orientations.
                       if (uses.size() > 2 || s.even == u.even) lower(bad, 4 * s.tet + s.face);
                       if (uses.size() > 2) return;
                       const bool interface = mesh_.regions_[s.tet] != mesh_.regions_[u.tet];
@@ -126,7 +127,7 @@ void MeshBuilder::take_patches(const std::vector<InterfaceTriangle>& interfaces)
   if (std::all_of(interfaces.begin(), interfaces.end(),
                   [](const InterfaceTriangle& t) { return t.patch == 0; }))
     return;
-  std::map<Triangle, PatchId> patches;  // including patch 0: they are counted
+  std::map<Triangle, PatchId> patches;  // including patch 0, since faces are counted
   for (const InterfaceTriangle& t : interfaces) patches.emplace(face_key(t.ids), t.patch);
   FacePatches inner;
   std::size_t known = 0;
@@ -226,7 +227,7 @@ void MeshBuilder::split_stars() {
   mesh_.free_points_.reset(points, points);
   mesh_.frozen_.assign(points, 0);
   for (Index p : frozen) mesh_.frozen_[p] = EditableMesh::with_tets;
-  // Freeze all their tets, too: a change beside them could make them touch anew.
+  // Also freeze all their tets: a change next to these points could make other parts touch there.
   std::vector<std::uint8_t> around(points, 0);
   for (const TetRecord& t : mesh_.tets_)
     if (std::any_of(t.points.begin(), t.points.end(), [&](Index p) { return mesh_.frozen_[p] != 0; }))

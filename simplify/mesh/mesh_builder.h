@@ -23,17 +23,19 @@ class MeshBuilder {
   void link_faces();
   /// Sets the faces' patches from the input's interfaces.
   void take_patches(const std::vector<InterfaceTriangle>& interfaces);
-  /// Splits points whose star falls into parts not joined by faces. Freezes them with all their tets, and so
-  /// tets that share more than one face.
+  /// Splits points whose star consists of parts not joined by faces, and freezes them with all their tets.
+  /// Also freezes tets that share more than one face with another.
   void split_stars();
   std::vector<Index> points_with_split_stars() const;
-  /// The points of tets that share more than one face with another one: there is no complex to operate on.
+  /// The points of tets that share more than one face with another tet, and so do not form a simplicial
+  /// complex.
   std::vector<Index> points_of_glued_tets() const;
-  /// Adds a copy of each listed point for each further part of its star. Appends the copies to `frozen`.
+  /// Adds a copy of each listed point for each part of its star beyond the first. Appends the copies to
+  /// `frozen`.
   ///
   /// \return pairs of a copy and its original.
   std::vector<std::array<Index, 2>> split_points(const std::vector<Index>& split, std::vector<Index>& frozen);
-  /// Collects the tets at `point` that a chain of faces joins to the tet `first`.
+  /// Collects the tets at `point` that are connected to the tet `first` across faces.
   void part_of_star(Index point, Index first, LocalNumbers& seen, std::vector<Index>& part) const;
 
   EditableMesh& mesh_;

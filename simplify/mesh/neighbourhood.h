@@ -8,7 +8,7 @@
 
 namespace tetwright {
 
-/// Finds the tets around points and the points of tets. Time is proportional to the lists, not to the mesh.
+/// Finds the tets around points and the points of tets, in time proportional to the lists, not to the mesh.
 /// Reuses its memory; one thread at a time.
 class Neighbourhood {
  public:

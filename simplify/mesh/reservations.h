@@ -9,9 +9,9 @@
 
 namespace tetwright {
 
-/// Deterministic reservations: one word for each vertex, the last winner that claimed it (Blelloch, Fineman,
-/// Gibbons & Shun 2012, "Internally deterministic parallel algorithms can be fast"). Winners are numbered
-/// consecutively over all batches, so that old words need no clearing.
+/// Deterministic reservations: one word for each vertex, with the number of the last winner that claimed it
+/// (Blelloch, Fineman, Gibbons & Shun 2012, "Internally deterministic parallel algorithms can be fast").
+/// Winners are numbered consecutively over all batches, so old words need not be cleared.
 class Reservations {
  public:
   /// Frees all vertices.
@@ -32,7 +32,7 @@ class Reservations {
 
   /// Whether no winner of this batch has claimed a vertex of the read set.
   bool free(std::span<const Index> read_set) const {
-#ifndef TETWRIGHT_IGNORE_RESERVATIONS  // defined only in the test that shows that the other tests notice it
+#ifndef TETWRIGHT_IGNORE_RESERVATIONS  // only for the test that checks that other tests detect this
     for (Index v : read_set)
       if (words_[v] >= first_) return false;
 #else
@@ -40,8 +40,8 @@ class Reservations {
 #endif
     return true;
   }
-  /// Claims a write set for the next winner, including vertices of earlier winners: none of these is in its
-  /// read set, so it has read what it would read after they commit.
+  /// Claims a write set for the next winner. It may include vertices claimed by earlier winners: none of
+  /// these is in the read set, so their commits do not change the data that was read.
   void claim(std::span<const Index> write_set) {
     for (Index v : write_set) words_[v] = next_;
     ++next_;
@@ -55,11 +55,11 @@ class Reservations {
 
 /// Asserts, in builds without NDEBUG, the rule that makes results independent of threads: a thread that
 /// decides writes nothing, and one that commits writes only its write set. A violation throws InternalError
-/// at once. Does nothing in release builds.
+/// immediately. Does nothing in release builds.
 class WriteRule {
  public:
 #ifndef NDEBUG
-  /// While it exists, this thread must not write.
+  /// During its lifetime, this thread must not write.
   class Deciding {
    public:
     Deciding();
@@ -67,7 +67,7 @@ class WriteRule {
     Deciding(const Deciding&) = delete;
     Deciding& operator=(const Deciding&) = delete;
   };
-  /// While it exists, this thread may write only these vertices.
+  /// During its lifetime, this thread may write only these vertices.
   class Committing {
    public:
     explicit Committing(std::span<const Index> write_set);
@@ -76,7 +76,7 @@ class WriteRule {
     Committing& operator=(const Committing&) = delete;
   };
   static void check(Index vertex);
-  /// Checks a write that no vertex reserves.
+  /// Checks a write to data that no vertex guards.
   static void check();
 #else
   struct Deciding {

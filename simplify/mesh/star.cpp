@@ -40,7 +40,7 @@ Outcome Star::gather(const EditableMesh& mesh, Index centre_point) {
     const RegionId region = tets[i].region;
     const Tet& corners = mesh.points(tet);
     std::array<std::uint16_t, 3> link = tets[i].link;
-    // For all tets but the first, the neighbour that queued it has set two link points.
+    // For all tets except the first, the neighbour that queued it has set two link points.
     const int slot = slot_in(corners, centre), first_corner = slot_in(corners, points[link[0]]),
               second_corner = slot_in(corners, points[link[1]]);
     const std::array<int, 3> corner{first_corner, second_corner, 6 - slot - first_corner - second_corner};
@@ -65,7 +65,7 @@ Outcome Star::gather(const EditableMesh& mesh, Index centre_point) {
           }
         }
         if (!across.is_interface() || other < tet)
-          continue;  // an interface between two materials is seen from both sides
+          continue;  // an interface between two materials is visited from both sides
         interface_triangles.push_back({a, b, region, mesh.region(other), 0});
       }
       ++interface_count[a];

@@ -16,8 +16,7 @@ struct VolumeChange {
   double volume;
 };
 
-/// The closed star of a point, with the interface triangles at it. A local copy, so that operations work on
-/// memory that is near.
+/// The closed star of a point with its interface triangles: a local copy, for memory locality.
 struct Star {
   /// A tet of the star with its link triangle: (centre, link[0], link[1], link[2]) is positive.
   struct StarTet {
@@ -30,12 +29,12 @@ struct Star {
     /// Whether the link triangle has `point`, a local number.
     bool links(std::size_t point) const { return link[0] == point || link[1] == point || link[2] == point; }
   };
-  /// An interface triangle (centre, first, second): a face between different regions, outside being one.
+  /// An interface triangle (centre, first, second): a face between different regions, outside included.
   struct InterfaceTriangle {
     std::uint16_t first, second;  ///< local numbers
     RegionId inside, across;
     PatchId patch;
-    /// Whether this triangle and another one at a common edge belong to one smooth surface.
+    /// Whether this triangle and another one at a common edge belong to the same smooth surface.
     bool continues(const InterfaceTriangle& other) const {
       return patch == other.patch && ((inside == other.inside && across == other.across) ||
                                       (inside == other.across && across == other.inside));
@@ -53,8 +52,8 @@ struct Star {
   bool frozen = false;   ///< the centre must stay (EditableMesh::frozen)
   bool creases = false;  ///< two interface triangles meet at an edge and do not continue each other
 
-  /// Copies the closed star of `centre`. Interface faces get patch 0: a caller that knows their patches sets
-  /// them and calls find_creases().
+  /// Copies the closed star of `centre`. Interface faces get patch 0; a caller that knows their patches must
+  /// set them and call find_creases().
   ///
   /// \return done, stale or too_large.
   Outcome gather(const EditableMesh& mesh, Index centre);
@@ -63,12 +62,12 @@ struct Star {
 
   /// Makes the star empty.
   void begin(Index centre, const Vec3& position);
-  /// Local number of a link point, which is added if it is new.
+  /// Local number of a link point; adds it if it is new.
   std::uint16_t add_point(Index p, const Vec3& position);
   /// Adds the interface triangle (centre, first, second).
   /// \pre Both points have been added.
   void add_interface_triangle(Index first, Index second, RegionId inside, RegionId across, PatchId patch);
-  /// Call it when all interface triangles have been added, or their patches changed.
+  /// Call this after adding all interface triangles or changing their patches.
   void find_creases();
 
   /// Dimension of the edge from the centre to a link point: 3 within a material, 2 on an interface, 1 on a
@@ -77,7 +76,7 @@ struct Star {
     const unsigned n = interface_count[link_point];
     return n == 0 ? 3 : n == 2 && !(creases && crease_[link_point]) ? 2 : 1;
   }
-  /// Dimension of the centre (README.md, Topology): 3, 2, 1, or else 0.
+  /// Dimension of the centre (README.md, Topology), 0 to 3.
   int dimension() const;
 
   /// For each tet, in their order, (y - x) x (z - x), where x, y, z are its link points: six times its volume
@@ -86,8 +85,8 @@ struct Star {
   void compute_normals();
 
   /// Gradient of each region's volume with respect to the centre's position: moving the centre by d changes
-  /// the volume of gradients[i].region by exactly gradients[i].change . d. Has no entry for outside; empty
-  /// without interface triangles.
+  /// the volume of gradients[i].region by exactly gradients[i].change . d. Contains no entry for outside;
+  /// empty without interface triangles.
   struct VolumeGradient {
     RegionId region;
     Vec3 change;
@@ -100,8 +99,8 @@ struct Star {
   /// Error(op) of Cutler, Dorsey & McMillan 2004, section 3, for moving the centre by `step`: gamma * sum
   /// over the materials of the cube root of the volume change.
   ///
-  /// \param losses_cancel uses the net change, as the paper does. Otherwise the gains and losses of the
-  ///   interface triangles add up, so that cutting off a saddle or an edge has its cost.
+  /// \param losses_cancel uses the net change, as in the paper. Otherwise the absolute gains and losses of
+  ///   the interface triangles add up, so that cutting off a saddle or an edge has a cost.
   double surface_error(const Vec3& step, double gamma, bool losses_cancel);
 
  private:

@@ -11,7 +11,7 @@ namespace tetwright {
 
 inline bool contains(const Tet& t, Index p) { return t[0] == p || t[1] == p || t[2] == p || t[3] == p; }
 
-/// Walks the star of a point from tet to tet by ids alone. Reuses its memory.
+/// Walks the star of a point from tet to tet without reading positions. Reuses its memory.
 class StarWalk {
  public:
   /// Whether test(tet) is true for some tet at `point`; stops at the first.
@@ -48,8 +48,8 @@ class StarWalk {
     return any(mesh, p, [q](const Tet& t) { return contains(t, q); });
   }
 
-  /// Whether a gathered ring has all tets at its edge: if wedges of material touch along an edge, a ring has
-  /// the tets of one wedge only.
+  /// Whether a gathered ring has all tets at its edge. If wedges of material touch along an edge, a ring
+  /// contains the tets of only one wedge.
   bool is_whole(const EditableMesh& mesh, const EdgeRing& ring) {
     std::size_t count = 0;
     any(mesh, ring.a, [&](const Tet& t) {

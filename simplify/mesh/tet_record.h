@@ -16,8 +16,8 @@ inline constexpr RegionId outside_id = 0xffffffffu;
 /// same two regions that differ in their patch meet in a junction curve: a feature edge, or crease.
 using PatchId = std::uint16_t;
 
-/// A tet's entry for one of its faces: the tet across it and whether that one is of another region, or
-/// outside and the patch of the boundary face. 4 bytes.
+/// A tet's entry for one of its faces: the tet across it and whether its region differs, or outside and the
+/// patch of the boundary face. 4 bytes.
 class FaceLink {
  public:
   constexpr FaceLink() = default;
@@ -34,7 +34,7 @@ class FaceLink {
   constexpr PatchId patch() const { return static_cast<PatchId>(~word_); }
   constexpr bool operator==(const FaceLink&) const = default;
 
-  /// Number of tets that fit beside the flag and the codes for outside.
+  /// Max number of tets, given the bits for the flag and the codes for outside.
   static constexpr std::size_t max_tets = std::size_t{1} << 30;
 
  private:
@@ -43,7 +43,7 @@ class FaceLink {
   std::uint32_t word_ = ~std::uint32_t{0};
 };
 
-/// The connectivity of a tet: half a cache line, all that a walk through the mesh reads.
+/// The connectivity of a tet: half a cache line, and all that a walk through the mesh reads.
 struct alignas(32) TetRecord {
   Tet points;                     ///< no_index four times: dead
   std::array<FaceLink, 4> links;  ///< across the face opposite each point
@@ -56,13 +56,13 @@ inline Triangle face_of(const Tet& points, int face) {
   return {points[c[0]], points[c[1]], points[c[2]]};
 }
 
-/// Slot of `point` in a tet. Branch-free, since no processor could predict the branches.
+/// Slot of `point` in a tet. Branch-free, since the branches would be unpredictable.
 /// \pre The tet has the point.
 inline int slot_in(const Tet& points, Index point) {
   return (points[1] == point) + 2 * (points[2] == point) + 3 * (points[3] == point);
 }
 
-/// Stands for the point that an operation is about to add, until it gets a number.
+/// Placeholder for the point that an operation is about to add, until it gets a number.
 inline constexpr Index unnumbered_point = no_index - 1;
 
 inline constexpr Tet dead_tet{no_index, no_index, no_index, no_index};

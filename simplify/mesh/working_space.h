@@ -13,9 +13,9 @@ class WorkingSpace {
  public:
   WorkingSpace() = default;
   /// Chooses the shift and the scale. An axis is shifted by its lowest coordinate if all differences from it
-  /// are exact: a body far away then has as many bits to move in as one at the origin, and a body that was
-  /// moved exactly gets the same working coordinates. The scale brings the largest coordinate into [1, 2). If
-  /// differences overflow, valid() is false.
+  /// are exact. A body far from the origin then has the same resolution as one at the origin, and an exactly
+  /// translated body gets the same working coordinates. The scale brings the largest coordinate into [1, 2).
+  /// If differences overflow, valid() is false.
   /// \pre The points are finite.
   static WorkingSpace of(const std::vector<Vec3>& points);
 
@@ -24,9 +24,9 @@ class WorkingSpace {
   double scale() const { return scale_; }
   Vec3 to_input(const Vec3& working) const;
   Vec3 to_working(const Vec3& input) const;
-  /// Rounds a position to a lattice of 2^-30 (about 1e-9 of the mesh's size), and on to the nearest position
-  /// that has exact input coordinates. So signs hold for the coordinates as written, and a mesh that was
-  /// moved far away gives the same result.
+  /// Rounds a position to a lattice of spacing 2^-30 (about 1e-9 of the mesh's size), then to the nearest
+  /// position with exact input coordinates. Orientation signs therefore hold for the coordinates as written,
+  /// and a mesh that was moved far away gives the same result.
   Vec3 snap(const Vec3& working) const;
 
  private:

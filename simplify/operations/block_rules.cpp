@@ -11,7 +11,7 @@ namespace {
 
 using Features = SimplifyTuning::Features;
 
-/// Max distance of the samples from the feature edges, or infinity if one exceeds `at_most`.
+/// Max distance of sample points of a segment from the feature edges; infinity if one exceeds `at_most`.
 double crease_distance(const SurfaceProjection& projection, const Vec3& p, const Vec3& q, double at_most) {
   double largest = 0;
   for (const double s : Features::segment_parameters) {
@@ -43,7 +43,7 @@ bool near_crease(const BlockRules& rules, const Star& star, std::size_t first, c
             crease_distance(*rules.surface.projection, to, star.positions[*second], bound) <= bound);
   };
   if (fits()) return true;
-  // Allow the distance of the segments that are replaced.
+  // Allow the distance of the replaced segments.
   const double unbounded = (star.positions[first] - star.centre_position).norm();
   for (std::size_t p = 0; p < star.points.size(); ++p)
     if (star.edge_dimension(p) == 1)

@@ -17,8 +17,8 @@
 
 namespace tetwright {
 
-/// Bounds of the number of tets: no operation may take it below the minimum, and none that adds tets above
-/// the maximum.
+/// Bounds on the number of tets: no operation may take it below the minimum, and none that adds tets may take
+/// it above the maximum.
 struct CountBounds {
   std::size_t min = 0, max = std::numeric_limits<std::int64_t>::max();
   bool allow(std::size_t live, std::int64_t change) const {
@@ -28,14 +28,14 @@ struct CountBounds {
   }
 };
 
-/// Bound on Error(op) of Cutler, Dorsey & McMillan 2004, section 3: on the volume by which one operation
-/// changes materials.
+/// Bound on Error(op) of Cutler, Dorsey & McMillan 2004, section 3: the volume by which one operation changes
+/// materials.
 struct ErrorBound {
   /// E for edges of average length, working coordinates; std::nullopt: unbounded.
   std::optional<double> max = 0;
   double gamma = 10;  ///< weight of the volume error
-  /// Error(op) takes the net volume changes, as in the paper; otherwise it adds up the volumes that the
-  /// interface triangles sweep.
+  /// Error(op) uses net volume changes, as in the paper; otherwise it sums the volumes that the interface
+  /// triangles sweep.
   bool losses_cancel = false;
 
   /// The bound for edges of `scale` times the average length; infinity if there is none.
@@ -44,25 +44,25 @@ struct ErrorBound {
   }
 };
 
-/// Shapes that an operation may leave. It must make the worst tet better, unless this allows more.
+/// Shapes that an operation may leave. It must improve the worst tet, unless this allows more.
 struct Acceptance {
-  /// Annealing: probability of accepting an action that leaves a worse tet than before, and min share of the
-  /// worst quality that such an action keeps.
+  /// Annealing: probability of accepting an operation that makes the worst tet worse, and min fraction of the
+  /// worst quality that it must keep.
   double worse_probability = 0;
   float worse_floor = 0;
-  /// Operations whose new tets are all better than this are accepted, whatever was there before.
+  /// Operations whose new tets are all better than this are accepted, whatever the old tets.
   std::optional<float> good_enough;
 };
 
-/// Limits of collapses alone. Lengths in working coordinates.
+/// Limits that apply to collapses only. Lengths in working coordinates.
 struct CollapseLimits {
-  /// Max number of targets that a collapse tries, in the order of their weight.
+  /// Max number of targets that a collapse tries, in ascending order of weight.
   std::size_t max_targets = SimplifyTuning::Collapses::max_targets;
   /// Weight, relative to E, of the distance by which a collapse moves the surface at the removed point;
-  /// std::nullopt: the volume alone decides, as in the paper.
+  /// std::nullopt: only the volume counts, as in the paper.
   std::optional<double> distance_weight;
   std::optional<double> max_collapsed_edge;  ///< max length of an edge that is collapsed
-  std::optional<double> max_new_edge;        ///< max length of an edge that a collapse makes
+  std::optional<double> max_new_edge;        ///< max length of an edge that a collapse creates
   /// Collapses only edges that BlockRules::sizes calls too short.
   /// \pre BlockRules::sizes is set.
   bool short_edges_only = false;
@@ -70,24 +70,24 @@ struct CollapseLimits {
 
 /// Distances of the surface from a reference, and how points move along it. Working coordinates.
 struct SurfaceBounds {
-  /// Target of the projection of points on interfaces and junction curves; null: they stay in planes of
+  /// Surface onto which points of interfaces and junction curves are projected; null: they stay in planes of
   /// constant volume.
   const SurfaceProjection* projection = nullptr;
   /// Max distance of a new interface triangle's centroid from the reference (needs `projection`), for edges
-  /// of average length. Unlike E it does not add up over several operations.
+  /// of average length. Unlike E, it does not accumulate over several operations.
   std::optional<double> max_distance;
   /// Max distance of a feature segment from the input's feature edges; a segment may keep the distance of
   /// those it replaces. std::nullopt: the mesh has no patches.
   std::optional<double> max_feature_distance;
-  /// Lets points of interfaces, junction curves and corners leave them by up to max_distance, or as far as
-  /// they are off already, if that improves the shapes (needs `projection`). Points where patches meet, and
-  /// points of flat patches, stay.
+  /// Lets points of interfaces, junction curves and corners leave them by up to max_distance, or by their
+  /// current distance if that is larger, if that improves the shapes (needs `projection`). Points where
+  /// patches meet, and points of flat patches, never leave.
   bool leave_surface = false;
 };
 
 /// Bound on the distance of a sample of the input's surface from the triangle that owns it, and of a new
-/// triangle from the input's surface, unless they were as far before (needs SurfaceGrid::samples()). Working
-/// coordinates.
+/// triangle from the input's surface. Distances already larger must not increase. Needs
+/// SurfaceGrid::samples(). Working coordinates.
 struct DeviationBound {
   std::optional<double> max;        ///< for edges of average length
   std::optional<double> tolerance;  ///< upper limit of the bound, for edges of any length
@@ -104,30 +104,31 @@ struct DeviationBound {
   }
 };
 
-/// The bounds that all operations of a block respect.
+/// The rules that all operations of a block follow.
 struct BlockRules {
   Objective objective;
   CountBounds count;
   ErrorBound error;
   Acceptance acceptance;
   CollapseLimits collapse;
-  /// Target lengths of edges; null: none. No operation then leaves an edge that violates a bound by more than
-  /// all edges that the operation changes did before. With a target length, ErrorBound::max,
+  /// Target lengths of edges; null: none. No operation then leaves an edge that violates a bound by a larger
+  /// factor than the worst edge of the changed tets did before. With a target length, ErrorBound::max,
   /// SurfaceBounds::max_distance and DeviationBound::max apply to edges of the average length; see
   /// scale_at().
   const EdgeSizes* sizes = nullptr;
   SurfaceBounds surface;
   DeviationBound deviation;
-  /// All tets are positive, and boundary and interface triangles intersect only in shared vertices and edges:
-  /// the mesh is embedded. If the centre lies within a material, a collapse that leaves positive tets then
-  /// satisfies the link condition: an edge elsewhere that joins the target to a point of the centre's link
-  /// would have to lie inside the star.
+  /// The mesh is embedded: all tets are positive, and boundary and interface triangles intersect only in
+  /// shared vertices and edges. If the centre lies within a material, a collapse that leaves positive tets
+  /// then satisfies the link condition, because any other edge from the target to a point of the centre's
+  /// link would have to lie inside the star.
   bool embedded = false;
 
-  /// Whether the mesh has patches. Points then move on their patch and along the feature edges between
+  /// Whether the mesh has patches. If so, points move on their patch and along the feature edges between
   /// patches, and never leave a flat patch.
   bool has_patches() const { return surface.max_feature_distance.has_value(); }
-  /// Target edge length at a point over the average one of the simplified mesh; 1 without a target length.
+  /// Ratio of the target edge length at a point to the average one of the simplified mesh; 1 without a target
+  /// length.
   double scale_at(const Vec3& place) const {
     return sizes && sizes->has_target_length() ? objective.scale_at(place) : 1;
   }
@@ -137,13 +138,14 @@ struct BlockRules {
   void project_onto(const SurfaceProjection& surfaces, double diagonal);
 };
 
-/// Whether an added interface triangle stays near the reference, if the rules require it.
+/// Whether an added interface triangle stays near the reference; true if the rules do not require it.
 ///
-/// \param inside, across the regions that it separates.
+/// \param inside, across the regions that the triangle separates.
 bool near_reference(const BlockRules& rules, const SurfaceGrid::Added& t, RegionId inside, RegionId across);
 
-/// Whether the feature segments that end in the star's centre may be replaced by one from link point `first`
-/// to `to`, and with `second` by another one from `to` to that link point. Link points by local number.
+/// Whether the feature segments that end at the star's centre may be replaced by a segment from link point
+/// `first` to `to` and, if `second` is given, by another one from `to` to that link point. Link points are
+/// local numbers.
 /// \pre rules.has_patches().
 bool near_crease(const BlockRules& rules, const Star& star, std::size_t first, const Vec3& to,
                  std::optional<std::size_t> second = {});

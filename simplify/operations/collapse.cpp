@@ -12,7 +12,7 @@ namespace tetwright {
 
 namespace {
 
-/// Rank of a refusal: the later the test that refused, the higher. The highest one is reported.
+/// Rank of a refusal, higher for later tests. The refusal with the highest rank is reported.
 int depth(Outcome o) {
   switch (o) {
     case Outcome::count:
@@ -47,7 +47,7 @@ double distance_left(const Star& star, std::size_t b) {
 }
 
 /// Fills the proposal's edit with the interface triangles before and after the collapse. False if an added
-/// one is too far from the reference.
+/// triangle is too far from the reference.
 bool surface_edit(Workspace& ws, const BlockRules& rules, std::size_t b) {
   const Star& star = ws.star;
   SurfaceGrid::Edit& edit = ws.proposal.edit;
@@ -68,12 +68,12 @@ bool surface_edit(Workspace& ws, const BlockRules& rules, std::size_t b) {
   return true;
 }
 
-/// Closes the gap that a tet with both ends of the edge leaves: links the neighbours across its faces
-/// opposite these ends to each other, and gives its points other incident tets.
+/// Closes the gap left by a tet with both ends of the edge: links the neighbours across its faces opposite
+/// these ends to each other, and assigns other incident tets to its points.
 void close_gap(const EditableMesh& mesh, Proposal& proposal, Index tet) {
   const int slot_a = mesh.slot_of(tet, proposal.centre), slot_b = mesh.slot_of(tet, proposal.target);
   const FaceLink across_a = mesh.link(tet, slot_a), across_b = mesh.link(tet, slot_b);
-  /// Link of a neighbour on one side to the other one.
+  /// The link from the neighbour on one side to the other one.
   const auto joined = [&](Index side, FaceLink other) {
     return other.is_outside() ? other
                               : FaceLink::to(other.tet(), mesh.region(side) != mesh.region(other.tet()));
@@ -82,7 +82,7 @@ void close_gap(const EditableMesh& mesh, Proposal& proposal, Index tet) {
     if (!side.is_outside())
       proposal.relinks.push_back({side.tet(), static_cast<std::uint8_t>(mesh.face_towards(side.tet(), tet)),
                                   joined(side.tet(), other)});
-  // Both neighbours keep the tet's two other points, and after the collapse both have b.
+  // Both neighbours have the tet's two other points, and after the collapse both have b.
   const Index keeper = across_b.is_outside() ? across_a.tet() : across_b.tet();
   for (int k = 0; k < 4; ++k) {
     const Index p = mesh.points(tet)[k];
@@ -98,7 +98,7 @@ void propose(Workspace& ws, std::size_t b) {
   proposal.centre = star.centre;
   proposal.target = star.points[b];
   proposal.claim_star(star);
-  // Add the target to the read set: its star was read, too.
+  // Add the target to the read set, since its star was read as well.
   std::swap(proposal.write_set[1], proposal.write_set[1 + b]);
   proposal.read_set_size = 2;
   proposal.rated.clear();
@@ -121,7 +121,7 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
   Star& star = ws.star;
   std::vector<float>& qualities = ws.qualities;
   const Vec3& to = star.positions[b];
-  // Test orientation first: the cheapest test, and the one that fails most often.
+  // Test orientation first: it is the cheapest test and fails most often.
   std::size_t left = 0;
   double min_det = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < star.tets.size(); ++k) {
@@ -132,8 +132,8 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
     if (!(det > 0)) return Outcome::inverts;
     min_det = std::min(min_det, det);
   }
-  // If each tet of the star stands on another one, the whole star vanishes: an ear of the boundary is cut
-  // off.
+  // If no tet of the star remains, an ear of the boundary is cut off. Each tet must then have a neighbour
+  // opposite the centre that does not contain it.
   if (left == 0)
     for (const Star::StarTet& t : star.tets)
       if (const Index below = ws.mesh.neighbour(t.tet, t.slot);
@@ -155,7 +155,8 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
         rules.objective(to, star.positions[t.link[0]], star.positions[t.link[1]], star.positions[t.link[2]]);
     if (!(qualities[k] > limit)) return Outcome::quality;
   }
-  // Bound the distance beside the paper's volumes: the tip of a spike has hardly any volume.
+  // Bound the distance in addition to the paper's volume error, since the tip of a spike has hardly any
+  // volume.
   if (!star.interface_triangles.empty() && rules.collapse.distance_weight &&
       *rules.collapse.distance_weight * distance_left(star, b) >
           rules.error.limit(rules.scale_at(star.centre_position)))

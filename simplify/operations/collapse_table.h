@@ -9,7 +9,7 @@
 
 namespace tetwright {
 
-/// Kinds of vertices as collapses see them (README.md, Topology).
+/// Kinds of vertices, for collapses (README.md, Topology).
 enum class VertexKind : std::uint8_t {
   interior,        ///< dimension 3: within one material
   interface,       ///< dimension 2: on the boundary, an interface or a patch
@@ -19,12 +19,12 @@ enum class VertexKind : std::uint8_t {
 };
 inline constexpr std::size_t vertex_kind_count = 5;
 
-/// Entry of the table for a collapse that is refused whatever the edge.
+/// Table entry for a collapse that is refused along any edge.
 inline constexpr std::uint8_t never = 0;
 
 /// Dimension of the edge along which a vertex (row) may be collapsed onto another one (column), or `never`:
 /// the removed vertex's own dimension, which keeps it within its material, interface or curve. No end of an
-/// edge has a larger dimension than the edge. Frozen vertices never vanish, but others may collapse onto
+/// edge has a larger dimension than the edge. Frozen vertices are never removed, but others may collapse onto
 /// them.
 inline constexpr std::array<std::array<std::uint8_t, vertex_kind_count>, vertex_kind_count> collapse_table{{
     // onto interior, interface, junction_curve, corner, frozen
@@ -35,8 +35,8 @@ inline constexpr std::array<std::array<std::uint8_t, vertex_kind_count>, vertex_
     {never, never, never, never, never},  // frozen
 }};
 
-/// Dimension of all edges along which a vertex of this kind may be collapsed; `never` if there are none. It
-/// alone decides: an edge of this dimension leads to no target that its row refuses.
+/// Dimension of all edges along which a vertex of this kind may be collapsed; `never` if there are none. This
+/// test suffices: no edge of this dimension leads to a target that the vertex's row refuses.
 constexpr int collapsible_edge(VertexKind kind) {
   for (const std::uint8_t dimension : collapse_table[static_cast<std::size_t>(kind)])
     if (dimension != never) return dimension;

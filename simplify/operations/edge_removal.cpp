@@ -30,7 +30,7 @@ Outcome surface_edit(Workspace& ws, const BlockRules& rules, Index s, Index t, R
   const int materials = across == outside_id ? 1 : 2;
   if (rules.error.gamma * materials * portable_cbrt(swept) > rules.error.limit())
     return Outcome::surface_error;
-  // Refuse folds: every new triangle must face the way both old ones do.
+  // Refuse folds: the normal of every new triangle must agree with those of both old ones.
   const std::array<Vec3, 2> before{normal_of(a, ps, b), normal_of(a, b, pt)};
   const std::array<Vec3, 2> after{normal_of(a, ps, pt), normal_of(b, pt, ps)};
   for (const Vec3& n : after)
@@ -52,7 +52,7 @@ class EdgeRemoval {
   EdgeRemoval(Workspace& ws, const BlockRules& rules)
       : ws_(ws), rules_(rules), dimension_(ws.ring.dimension()) {}
 
-  /// \param kind set to the flip that the removal is, if it is one.
+  /// \param kind receives the kind of flip, if the removal is one.
   Outcome run(const FlipReach& reach, Operation& kind) {
     if (dimension_ == 1) return Outcome::material_rule;
     make_chains();
@@ -104,8 +104,8 @@ class EdgeRemoval {
                   ws_.grid.patch(mesh, {ring.a, ring.b, ws_.chains[0].back()})};
       return;
     }
-    // The boundary face of the first and of the last tet has a, b and that end of the chain: it is opposite
-    // the chain's next point.
+    // The boundary faces of the first and last tet contain a, b and an end of the chain, and are opposite the
+    // next point of the chain.
     const std::size_t n = ring.points.size();
     patches_ = {mesh.link(ring.tets.front(), mesh.slot_of(ring.tets.front(), ring.points[1])).patch(),
                 mesh.link(ring.tets.back(), mesh.slot_of(ring.tets.back(), ring.points[n - 2])).patch()};
@@ -133,7 +133,7 @@ class EdgeRemoval {
     return Outcome::done;
   }
 
-  /// Whether a tet or an interface triangle of the ring stays as it is.
+  /// Whether a tet or an interface triangle of the ring is frozen.
   bool frozen() const {
     const EdgeRing& ring = ws_.ring;
     const EditableMesh& mesh = ws_.mesh;
@@ -157,7 +157,7 @@ class EdgeRemoval {
       ws_.triangulations[c].triangles([&](std::size_t i, std::size_t k, std::size_t j) {
         for (const Tet& t : {Tet{p[i], p[k], p[j], ring.b}, Tet{p[i], p[j], p[k], ring.a}})
           proposal.added.push_back({t, regions_[c], quality_of(mesh, rules_, t)});
-        // Diagonals must be new; for a ring of three, the triangle must be.
+        // Diagonals must be new; for a ring of three points, the triangle must be new.
         if (single_triangle) {
           present |=
               ws_.walk.any(mesh, p[i], [&](const Tet& t) { return contains(t, p[k]) && contains(t, p[j]); });
@@ -220,7 +220,7 @@ Outcome remove_edge(Workspace& ws, const BlockRules& rules, Index tet, int edge,
   Operation kind = Operation::edge_removal;
   Outcome o = ws.ring.gather(ws.mesh, tet, edge, reach.basic() ? basic_ring : EdgeRing::max_tets);
   if (o == Outcome::done) o = EdgeRemoval(ws, rules).run(reach, kind);
-  // Not a basic flip: nothing was tried.
+  // Not a basic flip, so nothing was tried.
   if (reach.basic() && kind == Operation::edge_removal) return Outcome::no_candidate;
   return ws.count(kind, o);
 }

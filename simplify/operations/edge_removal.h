@@ -6,7 +6,7 @@
 
 namespace tetwright {
 
-/// Edge removal: replaces the tets around an edge by others without it if that improves the worst (Shewchuk
+/// Edge removal: replaces the tets around an edge by tets without it if that improves the worst one (Shewchuk
 /// 2002, "Two discrete optimization algorithms for the topological improvement of tetrahedral meshes"; the
 /// ring is triangulated by Klincsek's dynamic program).
 ///
@@ -14,7 +14,7 @@ namespace tetwright {
 /// - A boundary edge has an open chain of points; two tets make the flip 2-2.
 /// - An edge of an interface between two regions has two chains that share their ends; two tets on each side
 ///   make the flip 4-4. The two new interface triangles share the edge between these ends.
-/// - Edges of junction curves stay.
+/// - Edges of junction curves are never removed.
 ///
 /// Counts itself as flip32, flip22, flip44 or edge_removal.
 ///

@@ -5,9 +5,9 @@
 
 namespace tetwright {
 
-/// Whether the proposal would make tets overlap around one of its edit's narrow edges, where their dihedral
-/// angles would then sum to more than a full turn. A surface around a cavity of few triangles can turn inside
-/// out without an intersection of triangles, while all tets stay positive.
+/// Whether the proposal would make tets overlap around one of its edit's narrow edges, so that their dihedral
+/// angles sum to more than a full turn. The surface of a cavity with few triangles can turn inside out
+/// without intersections of triangles, while all tets stay positive.
 ///
 /// Adds the ends whose stars it reads to the proposal's read set.
 /// \pre The proposal is complete.

@@ -20,11 +20,11 @@ class FaceTree {
         region_(region),
         max_faces_(max_faces) {}
 
-  /// Extends the removal across the edge xy of a chosen face, if that is better than ending it there with the
+  /// Extends the removal across the edge xy of a chosen face, if that is better than ending there with the
   /// tet (a, b, x, y).
   ///
   /// \param tet_a, tet_b the tets on the two sides of the chosen face.
-  /// \return quality of the worst of the tets that end there.
+  /// \return quality of the worst tet of the better alternative.
   float grow(Index x, Index y, Index tet_a, Index tet_b) {
     const NewTet plain{{a_, b_, x, y}, region_, quality_of(mesh_, rules_, {a_, b_, x, y})};
     if (faces_ >= max_faces_) return keep(plain);

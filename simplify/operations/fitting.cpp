@@ -88,7 +88,7 @@ Outcome fit_to_samples(Workspace& ws, const BlockRules& rules, float floor, Samp
   }
   const double trace = a.trace();
   if (!(trace > 0)) return Outcome::no_candidate;
-  // Suppress motion that the normals leave open, along flat parts and straight ridges.
+  // Suppress motion along flat parts and straight ridges, which the normals do not determine.
   a += (Fitting::flat_share * trace) * Eigen::Matrix3d::Identity();
   Vec3 step = a.ldlt().solve(b);
   if (step.norm() < Fitting::min_step * rules.objective.quality.ideal_edge) return Outcome::no_candidate;

@@ -14,11 +14,11 @@ enum class SampleWeights : std::uint8_t {
 };
 
 /// Moves the centre of the gathered star, if it lies on an interface, so that the planes of its triangles fit
-/// their samples (SurfaceGrid::samples()) in the least-squares sense, by the whole, half or quarter step.
-/// Edges so come to lie on ridges of the input. Points of flat patches stay.
+/// their samples (SurfaceGrid::samples()) in the least-squares sense. Tries the whole, half and quarter step.
+/// As a result, edges align with ridges of the input. Points of flat patches do not move.
 ///
 /// \param floor the worst tet must stay above it or hardly get worse.
-/// \return as smooth(); no_candidate for other points, without samples, and if the step would be too short.
+/// \return as smooth(); no_candidate for other points, without samples, or if the step would be too short.
 Outcome fit_to_samples(Workspace& ws, const BlockRules& rules, float floor,
                        SampleWeights weights = SampleWeights::equal);
 

@@ -11,8 +11,8 @@ namespace tetwright {
 struct FlipReach {
   std::size_t max_ring;   ///< tets of a ring within one material
   std::size_t max_faces;  ///< faces removed at once
-  /// Whether only the swaps of the paper, section 4, are allowed (and 4-4, its 2-2 on an interface): rings of
-  /// three and single faces.
+  /// Whether only the swaps of the paper, section 4, are allowed: rings of three and single faces, and 4-4,
+  /// which is its 2-2 at an interface.
   bool basic() const { return max_ring == 3; }
 };
 

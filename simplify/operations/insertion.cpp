@@ -19,7 +19,7 @@ Cone cone(const Workspace& ws, const BlockRules& rules, const Vec3& at, Index te
 }
 
 /// Builds the star of a point inserted at `at` in ws.star. False if a point of the old tets would be lost, or
-/// if the cavity's hull is no surface (which takes inverted tets).
+/// if the cavity's hull is not a manifold surface (possible only with inverted tets).
 bool star_of_new_point(Workspace& ws, const Vec3& at, const std::vector<Cone>& cones) {
   const EditableMesh& mesh = ws.mesh;
   Star& star = ws.star;
@@ -69,7 +69,7 @@ void grow(Workspace& ws, const BlockRules& rules, const Vec3& at, std::vector<Co
       if (f == back) continue;
       const Index across = mesh.neighbour(beyond, f);
       if (across != no_index && std::find(removed.begin(), removed.end(), across) != removed.end()) {
-        // Keep an interface between two parts of the cavity.
+        // Do not remove an interface between two parts of the cavity.
         better = !mesh.link(beyond, f).is_interface();
         ++meets;
         continue;
@@ -90,7 +90,7 @@ void grow(Workspace& ws, const BlockRules& rules, const Vec3& at, std::vector<Co
 }
 
 /// Builds the star of a point at `at` that replaces the `apexes` of the proposal's `removed` tets. With
-/// InsertionPlace::best also removes tets around if that is better.
+/// InsertionPlace::best, also removes surrounding tets if that is better.
 ///
 /// \return done; link_condition if a point would be lost.
 template <class Apexes>

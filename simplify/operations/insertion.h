@@ -8,8 +8,8 @@ namespace tetwright {
 /// Position of an inserted point.
 enum class InsertionPlace {
   centre,  ///< the centroid of the tet, face or edge, as in section 4 of the paper
-  /// The best position that find_place() reaches from there. Tets around that the new point sees well are
-  /// removed, too, so that one tet need not become four of its shape.
+  /// The best position that find_place() reaches from the centroid. Surrounding tets that are well visible
+  /// from the new point are removed as well, so that a tet need not become four tets of similar shape.
   best
 };
 
@@ -27,7 +27,7 @@ Outcome insert_in_face(Workspace& ws, const BlockRules& rules, Index tet, int fa
 /// Inserts a point in an edge, which halves all tets around it. Counted as insert_in_edge.
 ///
 /// \param edge index into tet_edges of `tet`.
-/// \param interior also accepts edges within a material, not only those of the boundary, of interfaces and of
+/// \param interior also accepts edges within a material, not only edges of the boundary, of interfaces and of
 ///   junction curves.
 Outcome insert_in_edge(Workspace& ws, const BlockRules& rules, Index tet, int edge, InsertionPlace place,
                        bool interior);

@@ -9,7 +9,7 @@
 
 namespace tetwright {
 
-/// Quality of a tet as operations see it: larger is better; 0 means flat or negative and is never accepted.
+/// Quality of a tet for operations: larger is better; 0 means flat or negative and is never accepted.
 struct Objective {
   enum class Kind : std::uint8_t {
     paper,  ///< Quality(t)^3: angle, volume and longest edge, relative to the target count
@@ -18,10 +18,11 @@ struct Objective {
   Kind kind = Kind::paper;
   TetQuality quality{1, 1, 5, 0};
   ShapeObjective shape = ShapeObjective::both;
-  /// Kind::paper: target lengths of edges; `quality` is then for their average. Null: the same everywhere.
+  /// Kind::paper: target lengths of edges; `quality` is then for their average. Null: the same length
+  /// everywhere.
   const EdgeSizes* sizes = nullptr;
 
-  /// Target edge length at a point over the average one.
+  /// Ratio of the target edge length at a point to the average one.
   double scale_at(const Vec3& place) const {
     return sizes->target_length(place) / (SimplifyTuning::EdgeLengths::edge_to_ideal * quality.ideal_edge);
   }
@@ -33,8 +34,8 @@ struct Objective {
   float max_for_volume(double det) const {
     return kind == Kind::paper && !has_target_length() ? static_cast<float>(quality.max_for_volume(det)) : 1;
   }
-  /// Like operator(), but below 0 for a flat or negative tet, lower the worse it is: shows the way out of
-  /// inversion.
+  /// Like operator(), but below 0 for a flat or negative tet, and lower the worse it is, so that ascent leads
+  /// out of inversion.
   float signed_value(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) const {
     return static_cast<float>(precise_signed_value(a, b, c, d));
   }

@@ -20,8 +20,7 @@ struct NewTet {
   float quality;
 };
 
-/// An operation's decision: everything that its commit will write. Reused, so that deciding does not
-/// allocate.
+/// An operation's decision: all data that its commit will write. Reused, so that deciding does not allocate.
 struct Proposal {
   enum class Change : std::uint8_t {
     none,
@@ -32,11 +31,11 @@ struct Proposal {
 
   Change change = Change::none;
   Operation operation = Operation::collapse;
-  /// Stage at which the item's turn continues after this proposal is committed; below 0: the turn ends.
+  /// Stage at which processing of the item continues after this proposal is committed; below 0: it ends.
   int next_stage = -1;
 
-  /// The points of all tets that change. The first `read_set_size` of them are the read set: points whose
-  /// stars were read, among them two points of each removed tet.
+  /// The points of all changed tets. The first `read_set_size` of them are the read set: points whose stars
+  /// were read, including two points of each removed tet.
   std::vector<Index> write_set;
   std::size_t read_set_size = 0;
 
@@ -52,7 +51,7 @@ struct Proposal {
   };
   std::vector<RatedTet> rated;
 
-  /// Collapse: a tet's new link, in place of one to a removed tet.
+  /// Collapse: a tet's new link, replacing one to a removed tet.
   struct Relink {
     Index tet;
     std::uint8_t face;
@@ -84,7 +83,7 @@ struct Proposal {
   std::int64_t count_change = 0;
   CountBounds count_bounds;
 
-  /// Filled when the proposal wins: slots of added tets beyond the removed ones, id of the new point.
+  /// Filled when the proposal wins: slots for added tets in excess of the removed ones, id of the new point.
   std::vector<Index> new_tets;
   Index new_point_id = no_index;
 
@@ -99,11 +98,11 @@ struct Proposal {
 
 // The steps of a batch of proposals. All but commit() run on one thread at a time.
 
-/// Makes room for new tets, beyond those removed, and new points, and frees all vertices.
+/// Makes room for new points and for new tets in excess of those removed, and frees all vertices.
 ///
 /// \param proposals max number of winners.
 void begin_batch(EditableMesh& mesh, std::size_t proposals, std::size_t new_tets, std::size_t new_points);
-/// Makes a proposal a winner: claims its write set, gives it free slots, and takes back those of removed
+/// Makes a proposal a winner: claims its write set, assigns free slots to it, and gives back those of removed
 /// tets.
 /// \pre mesh.reservations().free(proposal.read_set()).
 void grant(EditableMesh& mesh, SurfaceGrid& grid, Proposal& proposal);
@@ -122,12 +121,12 @@ struct CommitWorkspace {
   std::vector<Index> slots;
 };
 
-/// Carries out a winner: writes its write set. Safe concurrently with other winners of its batch.
+/// Carries out a winning proposal: writes its write set. Safe concurrently with other winners of its batch.
 void commit(EditableMesh& mesh, SurfaceGrid& grid, const Proposal& proposal, CommitWorkspace& ws);
-/// Ends the batch after its last commit: slots that its winners gave back become free.
+/// Ends the batch after its last commit: slots given back by its winners become free.
 void end_batch(EditableMesh& mesh, SurfaceGrid& grid);
 
-/// Grants and commits a batch of this one proposal.
+/// Grants and commits this proposal as a batch of its own.
 void commit_alone(EditableMesh& mesh, SurfaceGrid& grid, Proposal& proposal, CommitWorkspace& ws);
 
 }  // namespace tetwright

@@ -18,7 +18,7 @@ namespace {
 
 using Smoothing = SimplifyTuning::Smoothing;
 
-/// Centroid of the neighbours that the centre may follow.
+/// Centroid of the neighbours that attract the centre.
 Vec3 centroid(const Star& star, int dimension) {
   Vec3 sum = Vec3::Zero();
   double count = 0;
@@ -35,8 +35,8 @@ Vec3 centroid(const Star& star, int dimension) {
 
 /// Projects a step onto the plane that keeps volumes constant.
 Vec3 keep_volumes(const Star& star, Vec3 step) {
-  // At an interface between two materials the gradients are opposite, and on the boundary there is one: the
-  // first serves. Along a junction curve they differ: leave the step whole and let the error bound decide.
+  // The gradients are opposite at an interface between two materials, and the boundary has only one, so use
+  // the first. Along a junction curve they differ: leave the step unchanged and rely on the error bound.
   const Vec3& g = star.gradients.front().change;
   const double g2 = g.squaredNorm();
   if (g2 > 0) step -= g * (g.dot(step) / g2);
@@ -64,8 +64,8 @@ std::array<Vec3, 3> free_directions(const Star& star, int dimension, bool leave_
   return {along.normalized(), Vec3::Zero(), Vec3::Zero()};
 }
 
-/// The shortest vector of the gradients' convex hull, by Gilbert's iteration (1966): uphill for all of them,
-/// or next to zero.
+/// The shortest vector in the gradients' convex hull, by Gilbert's iteration (1966): an ascent direction for
+/// all of them, or nearly zero.
 Vec3 shortest_of_hull(const std::array<Vec3, Smoothing::max_active>& gradients, std::size_t count) {
   Vec3 v = gradients[0];
   for (int i = 0; i < Smoothing::hull_steps; ++i) {
@@ -82,15 +82,15 @@ Vec3 shortest_of_hull(const std::array<Vec3, Smoothing::max_active>& gradients, 
   return v;
 }
 
-/// Sorts the worst tets first: most positions are refused because of them.
+/// Sorts the worst tets first, since most positions are refused because of them.
 void sort_by_quality(Star& star) {
   std::sort(star.tets.begin(), star.tets.end(), [](const Star::StarTet& x, const Star::StarTet& y) {
     return x.quality != y.quality ? x.quality < y.quality : x.tet < y.tet;
   });
 }
 
-/// Whether the centre may leave its surface or curve a little. Points where patches meet and points of a flat
-/// patch never may.
+/// Whether the centre may leave its surface or curve slightly. Points where patches meet and points of flat
+/// patches may not.
 /// \pre Gradients are computed.
 bool may_leave(const Star& star, const BlockRules& rules) {
   return rules.surface.leave_surface && rules.surface.projection && !star.creases &&
@@ -125,7 +125,7 @@ class PlacementSearch {
   /// Nearest point on the surface, junction curve or corners that the centre belongs to, if within
   /// `max_distance`.
   std::optional<Vec3> nearest(const Vec3& to, double max_distance) {
-    // The last result bounds the search: steps are short.
+    // The last result bounds the search, since steps are short.
     const double known = known_ ? (*known_ - to).norm() : std::numeric_limits<double>::infinity();
     std::optional<Vec3> found = find_nearest(to, std::min(max_distance, known));
     if (!found && known < max_distance) found = known_;
@@ -144,27 +144,29 @@ class PlacementSearch {
   /// Sets the bounds on the centre's distance from its surface, curve or corner. False if it may not move.
   bool choose_bounds() {
     reach_ = Smoothing::projection_reach * shortest_;
-    // A surface point keeps its distance from the reference, which fit_to_samples() chose. Beyond the reach
-    // it stays in its plane.
+    // A surface point keeps its offset from the reference, which fit_to_samples() determined. Beyond the
+    // reach it stays in its plane.
     if (rules_.surface.projection && dimension_ == 2 && !leave_surface_)
       if (const auto on = nearest(star_.centre_position, reach_)) {
         const Vec3 normal = star_.gradients.front().change.normalized();
         offset_ = normal * normal.dot(star_.centre_position - *on);
-        // Drop rounding errors, which would add up.
+        // Drop rounding errors, which would accumulate.
         if (rules_.has_patches() && offset_.norm() <= tolerance::flat_patch) offset_.setZero();
       }
     max_distance_ = rules_.surface.max_distance.value_or(0);
     // A point of dimension 0 at which no curve ends or branches (two interfaces that touch) has no corner to
     // stay near, unless one happens to be within the distance.
     if (leave_surface_ && dimension_ == 0 && !nearest(star_.centre_position, max_distance_)) return false;
-    // Chords of a curve may have left a point farther away than its own moves allow: let it get no farther.
+    // A point may already be farther from its curve than its moves may take it, since chords cut corners. Do
+    // not let it get farther.
     if (leave_surface_ && dimension_ == 1)
       if (const auto on = nearest(star_.centre_position, std::numeric_limits<double>::infinity()))
         max_distance_ = std::max(max_distance_, (*on - star_.centre_position).norm());
     return true;
   }
 
-  /// End of a step to `to`: back on the surface or curve, or near it; nullopt if that is too far away.
+  /// End position of a step to `to`: back on the surface or curve, or near it; std::nullopt if that is too
+  /// far away.
   std::optional<Vec3> placed(Vec3 to) {
     if (rules_.surface.projection && dimension_ < 3) {
       const auto on = nearest(to, leave_surface_ ? max_distance_ : reach_);
@@ -193,8 +195,8 @@ class PlacementSearch {
     }
   }
 
-  /// The worst value at `to`; all values in ws.trial. nullopt if a value is not above the current worst, or E
-  /// forbids the move.
+  /// The worst value at `to`; writes all values to ws.trial. std::nullopt if a value is not above the current
+  /// worst, or if E forbids the move.
   std::optional<float> worst_at(const Vec3& to) {
     if (!star_.interface_triangles.empty() &&
         star_.surface_error(to - star_.centre_position, rules_.error.gamma, rules_.error.losses_cancel) >
@@ -209,8 +211,8 @@ class PlacementSearch {
     return worst;
   }
 
-  /// Gradients, by forward differences, of the tets that are about as bad as the worst one. Returns their
-  /// number.
+  /// Computes gradients, by forward differences, of the tets that are nearly as bad as the worst one. Returns
+  /// their number.
   std::size_t active_gradients(std::array<Vec3, Smoothing::max_active>& gradients) {
     std::vector<std::size_t>& order = ws_.order;
     const std::vector<float>& values = ws_.current;
@@ -279,7 +281,7 @@ class PlacementSearch {
   std::array<Vec3, 3> directions_;
   int direction_count_ = 0;
   double shortest_ = 0;  ///< shortest edge at the centre
-  double reach_ = 0;     ///< max distance of a step from the surface before it is projected back
+  double reach_ = 0;     ///< max distance from the surface from which a step is projected back
   double max_distance_ = 0;
   std::optional<Vec3> known_;   ///< last result of nearest()
   Vec3 offset_ = Vec3::Zero();  ///< from the surface

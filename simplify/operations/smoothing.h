@@ -10,27 +10,27 @@ namespace tetwright {
 /// gradients by finite differences, starting at the current position.
 ///
 /// A point of an interface (dimension 2) moves in the tangent plane and is projected back onto the surface
-/// (BlockRules::projection), a point of a junction curve (1) moves along it; without a projection both keep
-/// the volumes of both sides. With BlockRules::leave_surface these and corners (0) move freely near their
-/// surface, curve or corner: loops of a junction curve smaller than a tet so open up. Error(op) stays within
-/// E. Changes only the order of the star's tets.
+/// (SurfaceBounds::projection); a point of a junction curve (1) moves along it. Without a projection both
+/// preserve the volumes of both sides. With SurfaceBounds::leave_surface these points and corners (0) move
+/// freely near their surface, curve or corner, which can open loops of a junction curve smaller than a tet.
+/// Error(op) stays within E. Changes only the order of the star's tets.
 ///
 /// \param limit quality that the worst tet must exceed.
-/// \param found the position, if there is one.
+/// \param found receives the position, if there is one.
 /// \return whether a position was found.
 /// \pre Gradients are computed.
 bool find_place(Workspace& ws, const BlockRules& rules, int dimension, float limit, Placement& found);
 
-/// Moves the centre of the gathered star towards a centroid (section 4 of the paper): of all neighbours
-/// within a material, of those on the same interface, of the two on a junction curve. Tries the whole, half
-/// and quarter step. Uses up the star.
+/// Moves the centre of the gathered star towards a centroid (section 4 of the paper): within a material of
+/// all neighbours, on an interface of the neighbours on it, on a junction curve of the two neighbours along
+/// it. Tries the whole, half and quarter step. Modifies the star.
 ///
 /// \return done (proposed), material_rule (a corner, or frozen), quality, surface_error, self_intersection or
 ///   volume.
 Outcome smooth(Workspace& ws, const BlockRules& rules);
 
-/// Moves the centre of the gathered star to the position of find_place(); corners only with
-/// BlockRules::leave_surface.
+/// Moves the centre of the gathered star to the position found by find_place(); corners only with
+/// SurfaceBounds::leave_surface.
 ///
 /// \return as smooth().
 Outcome optimise(Workspace& ws, const BlockRules& rules);

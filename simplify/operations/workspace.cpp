@@ -13,8 +13,7 @@ namespace {
 
 using EdgeLengths = SimplifyTuning::EdgeLengths;
 
-/// Whether the proposal makes no edge too long or too short, or violates no bound by more than an edge that
-/// it removes.
+/// Whether no edge of the changed tets violates a bound by a larger factor than their worst edge did before.
 bool keeps_sizes(const Workspace& ws, const EdgeSizes& sizes) {
   const Proposal& p = ws.proposal;
   EdgeSizes::Excess before{1, 1}, after{0, 0};

@@ -40,11 +40,11 @@ struct Cone {
   float quality;
 };
 
-/// State of one worker while it decides: the mesh, which it only reads, the proposal that it fills, and
-/// memory that operations reuse, so that none of them allocates.
+/// State of one worker while it decides: the mesh, which is only read, the proposal that it fills, and memory
+/// that operations reuse, so that none of them allocates.
 ///
-/// An operation that answers `done` has left everything that its commit will write in `proposal`. It may
-/// still lose to an earlier operation of the batch. After any other answer the proposal is meaningless.
+/// An operation that returns `done` has stored all data that its commit will write in `proposal`. It may
+/// still lose to an earlier operation of the batch. After any other result the proposal is meaningless.
 struct Workspace {
   Workspace(const EditableMesh& m, const SurfaceGrid& g, const VolumeLedger& l)
       : mesh(m), grid(g), ledger(l) {}
@@ -74,7 +74,7 @@ struct Workspace {
   std::vector<Index> plain_cavity;                  ///< insertion
   std::vector<std::uint32_t> hull_edges;            ///< insertion
 
-  /// Star::gather() with the patches of interface faces, too.
+  /// Star::gather(), including the patches of interface faces.
   Outcome gather(Index point);
   /// Quality that the worst new tet must exceed: that of the worst old one, or less if annealing accepts a
   /// worse result. Draws one random number when annealing.

@@ -12,7 +12,7 @@ void ChangeJournal::clear() {
 
 void ChangeJournal::note(const EditableMesh& mesh, const Proposal& proposal) {
   using Change = Proposal::Change;
-  // Lists that a kind of change does not use may hold leftovers of an operation tried before.
+  // Lists that this kind of change does not use may contain data of an operation tried before.
   if (proposal.change != Change::move)
     for (Index t : proposal.removed) note_tet(mesh, t);
   if (proposal.change != Change::replace)

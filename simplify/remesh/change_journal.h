@@ -9,8 +9,8 @@
 
 namespace tetwright {
 
-/// Records the state before the operations of all tets and points that they changed: time and memory are
-/// proportional to their number.
+/// Records the previous state of all tets and points changed by operations. Time and memory are proportional
+/// to their number.
 class ChangeJournal {
  public:
   struct OldTet {
@@ -25,12 +25,12 @@ class ChangeJournal {
   };
 
   void clear();
-  /// Records the state of everything that a winner is about to change. One thread at a time.
+  /// Records the state of all elements that a winner is about to change. One thread at a time.
   /// \pre The winner is not committed yet.
   void note(const EditableMesh& mesh, const Proposal& proposal);
 
-  /// The tets that were removed or changed, and the slots given to new ones; each once, in the order of the
-  /// first change.
+  /// The tets that were removed or changed, and the slots assigned to new ones; each once, in order of first
+  /// change.
   const std::vector<OldTet>& tets() const { return tets_; }
   const std::vector<OldPoint>& points() const { return points_; }
   /// \pre p is a point of an old tet.

@@ -22,7 +22,7 @@ Box3 box_of(const TetCorners& corners) {
   return box;
 }
 
-/// Kahan's compensated sum: many small summands are not lost.
+/// Kahan's compensated sum, which does not lose many small summands.
 class Sum {
  public:
   void add(double x) {
@@ -125,7 +125,7 @@ FieldCarrier::Weights FieldCarrier::weights_at(const Vec3& p) const {
     return weigh(sources_[i], p, best.weights);
   };
   if (tree_.any_containing(p, tree_.all(), holds)) return best;
-  // Outside all: take the nearest point on their faces.
+  // The point is outside all old tets: use the nearest point on their faces.
   best = {};
   double nearest = std::numeric_limits<double>::infinity();
   tree_.nearest(p, nearest, tree_.all(), [&](std::size_t i, double limit) {

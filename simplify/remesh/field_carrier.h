@@ -10,15 +10,15 @@
 
 namespace tetwright {
 
-/// Carries fields over from the tets of a ChangeJournal to the tets that replace them.
+/// Transfers fields from the old tets of a ChangeJournal to the tets that replace them.
 ///
 /// Point fields are linear in each old tet. A point that no old tet contains (the surface moved outwards)
 /// gets the value of the nearest point on an old tet. Tet fields are densities: constant in each old tet,
-/// averaged by the volumes that old and new tets share. A constant added to the values of each material then
+/// averaged by the volumes that old and new tets share. Then a constant added to the values of each material
 /// restores the sum of value times volume over the changed tets.
 class FieldCarrier {
  public:
-  /// \pre The changes are done. Both arguments must outlive this object.
+  /// \pre All changes are complete. Both arguments must outlive this object.
   FieldCarrier(const EditableMesh& mesh, const ChangeJournal& journal);
 
   /// \param values `components` for each point slot. Writes those of points that were added or moved; sets

@@ -51,8 +51,8 @@ void LocalArea::observe(const Proposal& p) {
   changed_points_.insert(changed_points_.end(), p.write_set.begin(), p.write_set.end());
   journal_.note(mesh_, p);
   if (!p.has_new_point) return;
-  // A new point next to one beyond the rim belongs to the rim, so that work does not spread. It may reuse the
-  // number of a removed point.
+  // A new point adjacent to one beyond the rim belongs to the rim, so that work does not spread. Its number
+  // may be that of a removed point.
   const bool amid = std::all_of(p.write_set.begin(), p.write_set.end(),
                                 [&](Index q) { return q == p.new_point_id || place(q) != Place::beyond; });
   set_place(p.new_point_id, amid ? Place::inner : Place::rim);
@@ -76,7 +76,7 @@ std::vector<Index> LocalArea::tets_at(const std::vector<Index>& points, Part par
 }
 
 std::vector<TetSnapshot> LocalArea::bad_tets(float limit) {
-  // The points of all added or changed tets are in a write set.
+  // All points of added or changed tets are in a write set.
   const std::vector<Index> changed = tets_at(take_changed_points(Part::with_rim), Part::with_rim);
   candidates_.insert(candidates_.end(), changed.begin(), changed.end());
   near_.make_distinct(candidates_);

@@ -11,12 +11,12 @@
 
 namespace tetwright {
 
-/// Tets and points to work on, as lists that follow the changes: nothing scans the whole mesh. Observes every
-/// operation that a BlockRunner carries out while it exists.
+/// Tets and points to work on, as lists that are updated with every change, without scans of the whole mesh.
+/// During its lifetime, observes every operation that a BlockRunner carries out.
 class LocalArea final : public ImprovementArea {
  public:
   /// Covers `tets`, the rim around them, and the tets that replace these. Points beyond the rim are never
-  /// worked on; tets at the rim's points change with these.
+  /// worked on; tets at points of the rim may change with these points.
   ///
   /// \param journal records the changes.
   /// \param tets each once.
@@ -31,7 +31,7 @@ class LocalArea final : public ImprovementArea {
   std::size_t tet_count() const override { return first_count_; }
   /// Mean edge of the initial tets.
   double usual_edge() const override { return usual_edge_; }
-  /// \pre The limit does not rise from call to call: unchanged tets above it before are not listed.
+  /// \pre The limit does not increase from call to call: unchanged tets that were above it are not listed.
   std::vector<TetSnapshot> bad_tets(float limit) override;
   std::vector<Index> bad_points(float limit) override;
   std::vector<TetSnapshot> tets_around(const std::vector<TetSnapshot>& tets) override;
@@ -42,10 +42,10 @@ class LocalArea final : public ImprovementArea {
 
   /// The points of the initial tets, ascending.
   const std::vector<Index>& first_points() const { return first_points_; }
-  /// Tets with inner points only, or all without a point beyond the rim. Inner points are those of the
-  /// initial tets and those added since; with_rim adds the points of the rim.
+  /// Selects tets with inner points only, or tets without a point beyond the rim. Inner points are those of
+  /// the initial tets and those added since; with_rim includes the points of the rim.
   enum class Part { inner, with_rim };
-  /// The live points around which something has changed since the last call, ascending.
+  /// The live points whose surroundings have changed since the last call, ascending.
   std::vector<Index> take_changed_points(Part part);
   /// The area's tets at these points, each once, ascending.
   std::vector<Index> tets_at(const std::vector<Index>& points, Part part);

@@ -39,7 +39,7 @@ void PointTree::build(const EditableMesh& mesh) {
   new_node(no_index);
   for (Index p = 0; p < mesh.point_slots(); ++p)
     if (mesh.incident_tet(p) != no_index) nodes_[root].points.push_back(p);
-  // Reserve for all nodes that may arise, so that no later change reallocates.
+  // Reserve space for all possible nodes, so that no later change reallocates.
   nodes_.reserve(2 * (4 * nodes_[root].points.size() / Transfer::first_leaf_points + 1));
   halve(mesh, root, Transfer::first_leaf_points);
 }

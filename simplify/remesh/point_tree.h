@@ -15,9 +15,9 @@ namespace tetwright {
 
 /// Finds the points of a mesh in a box. A k-d tree (Bentley 1975) with up to 32 points in a leaf, updated
 /// when points are added, removed or moved: an overflowing leaf is halved at its median, two leaves with few
-/// points are merged, and an empty leaf is removed together with its parent, whose other child moves up. So
-/// the tree follows moving points. Time of a change is proportional to the depth, memory to the number of
-/// points: about 12 bytes each. Working coordinates. One thread at a time.
+/// points are merged, and an empty leaf is removed together with its parent, whose other child moves up. The
+/// tree thus adapts to moving points. The time of an update is proportional to the depth, memory to the
+/// number of points (about 12 bytes each). Working coordinates. One thread at a time.
 class PointTree {
  public:
   /// Builds the tree of all live points.
@@ -28,7 +28,7 @@ class PointTree {
   void repair(const EditableMesh& mesh, std::span<const ChangeJournal::OldPoint> changed);
   /// The points in a box, borders included, in no particular order.
   std::vector<Index> points_in(const EditableMesh& mesh, const Box3& box) const;
-  /// Number of nodes and leaves that memory is held for; for tests.
+  /// Number of nodes for which memory is allocated; for tests.
   std::size_t node_slots() const { return nodes_.size(); }
 
  private:
@@ -47,7 +47,7 @@ class PointTree {
   Index new_node(Index parent);
   void free_node(Index node);
   Index leaf_of(const Vec3& position) const;
-  /// Halves a leaf until each part has at most `max_points` points or coinciding ones.
+  /// Halves a leaf until each part has at most `max_points` points or only coincident points.
   void halve(const EditableMesh& mesh, Index node, std::size_t max_points);
   /// Merges two sibling leaves with few points, and removes an empty leaf.
   void shrink(Index node);

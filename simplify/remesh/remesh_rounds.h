@@ -22,11 +22,11 @@ class RemeshRounds {
   RemeshRounds& operator=(const RemeshRounds&) = delete;
 
   /// \param size target edge length, working coordinates.
-  /// \param floor min shape_quality() of the tets that these leave.
+  /// \param floor min shape_quality() of the tets that coarsen() and refine() leave.
   void coarsen(double size, float floor);
   void refine(double size, float floor);
-  /// Improves the bad tets of the region, or, with the rim, of the parts that coarsen() and refine() have
-  /// changed.
+  /// Improves the bad tets of the region or, after coarsen() or refine(), of the parts that these changed,
+  /// including the rim.
   ///
   /// \return number of rounds.
   int improve(const ImprovementPlan& plan);

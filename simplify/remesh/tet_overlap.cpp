@@ -16,8 +16,8 @@ using Transfer = SimplifyTuning::Transfer;
 /// The first three planes each cut a piece into at most three; the last one only measures volumes.
 constexpr std::size_t max_pieces = 27;
 
-/// Signed distances of a point from the cutting planes. They are linear in the point, so that coordinates are
-/// not needed.
+/// Signed distances of a point from the cutting planes. They are linear in the point, so coordinates are not
+/// needed.
 using Distances = std::array<double, 4>;
 
 struct Piece {
@@ -129,8 +129,8 @@ struct Relation {
     apart = (max_distances <= 0).any();
     if (apart) return;
     const Eigen::Array4d min_distances = distances[0].min(distances[1]).min(distances[2].min(distances[3])),
-                         // Do not count corners that only rounding puts across a plane, such as those of the
-                         // halves of an edge.
+                         // Ignore corners that are across a plane only by rounding, as at the two halves of a
+                         // split edge.
         tolerance = Transfer::plane_rounding * max_distances.max(-min_distances);
     apart = (max_distances <= tolerance).any();
     for (int f = 0; f < 4; ++f)

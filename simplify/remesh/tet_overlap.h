@@ -9,7 +9,7 @@ namespace tetwright {
 
 using TetCorners = std::array<Vec3, 4>;
 
-/// A positive tet with the planes of its faces, computed once for all tets that it is compared with.
+/// A positive tet with the planes of its faces, computed once for all comparisons.
 class PlanedTet {
  public:
   explicit PlanedTet(const TetCorners& corners);

@@ -19,8 +19,9 @@ namespace {
 
 using Batches = SimplifyTuning::Batches;
 
-/// The order of a shuffled block, by ascending keys: item i has the key i / step + r, where r is a random
-/// permutation of the numbers below `spacing` for as many consecutive items. `step` 0: the order given.
+/// The order of a shuffled block, by ascending keys. Item i has the key i / step + r, where the r of
+/// `spacing` consecutive items are a random permutation of the numbers below `spacing`. `step` 0: the given
+/// order.
 class BlockOrder {
  public:
   BlockOrder(std::size_t items, std::size_t step, std::size_t spacing, Random random)
@@ -59,7 +60,7 @@ class BlockOrder {
   std::size_t next_ = 0;            ///< of due_
 };
 
-/// Lets another thread run now and then, in the test build that looks for dependence on timing.
+/// Occasionally lets another thread run, in the test build that looks for dependence on timing.
 void maybe_yield() {
 #ifdef TETWRIGHT_INJECT_YIELDS
   static thread_local Random random(reinterpret_cast<std::uintptr_t>(&random));
@@ -67,7 +68,7 @@ void maybe_yield() {
 #endif
 }
 
-/// Runs chunks in parallel, or all in this thread if there are few.
+/// Runs chunks in parallel, or in this thread if there are few.
 void for_chunks(std::size_t count, std::size_t chunk,
                 const std::function<void(std::size_t begin, std::size_t end, unsigned worker)>& body) {
   const std::size_t chunks = (count + chunk - 1) / chunk;
@@ -202,7 +203,7 @@ void BlockRunner::run(const std::vector<Item>& items, bool in_order, const Attem
   again_.clear();
   while (!order.empty() || !again_.empty()) {
     if (progress_) progress_->throw_if_stopped();
-    // Losers come first, so that each item gets its turn.
+    // Process losers first, so that each item is eventually decided.
     totals_.repeats += static_cast<std::uint64_t>(
         std::count_if(again_.begin(), again_.end(), [](const Entry& e) { return e.stage == 0; }));
     batch_ = again_;

@@ -16,17 +16,17 @@ struct TetSnapshot {
   Tet points;
 };
 
-/// Runs a block of items (Cutler, Dorsey & McMillan 2004, section 3) in batches of three steps, so that the
-/// result is the same for any number of threads (deterministic reservations: Blelloch, Fineman, Gibbons &
-/// Shun 2012):
+/// Runs a block of items (Cutler, Dorsey & McMillan 2004, section 3) in batches of three steps. The result is
+/// the same for any number of threads (deterministic reservations: Blelloch, Fineman, Gibbons & Shun 2012):
 ///
-/// - decide, in parallel: each item's operation reads the mesh, which nobody changes, and leaves a Proposal;
-/// - select, in the batch's order: a proposal wins if no earlier winner's write set meets its read set.
+/// - decide, in parallel: each item's operation reads the mesh, which does not change, and leaves a Proposal;
+/// - select, in the batch's order: a proposal wins if no earlier winner's write set intersects its read set.
 ///   Winners commit their volumes to the ledger and get their slots. Losers are decided again in the next
-///   batch, before all others;
+///   batch, before all other items;
 /// - commit, in parallel: winners write their write sets.
 ///
-/// Random numbers are seeded by (seed, block, item). Nothing depends on which thread does what, or when.
+/// Random numbers are seeded by (seed, block, item). Results do not depend on the assignment of work to
+/// threads or on timing.
 class BlockRunner {
  public:
   /// \param batch_size size of a block's first batch, and max size of all; 0: chosen from the number of
@@ -36,15 +36,15 @@ class BlockRunner {
               std::size_t batch_size, Progress* progress);
   ~BlockRunner();
 
-  /// Tries one or more operations on an item: done with a proposal, or a refusal. `stage` is 0, or the
-  /// Proposal::next_stage of the proposal committed for this item.
+  /// Tries one or more operations on an item: returns done with a proposal, or a refusal. `stage` is 0, or
+  /// the Proposal::next_stage of the proposal committed for this item.
   using PointAttempt = std::function<Outcome(Workspace&, Index)>;
   using TetAttempt = std::function<Outcome(Workspace&, const TetSnapshot&, int stage)>;
-  /// Called before each winner is chosen; true ends the block.
+  /// Called before each winner is selected; true ends the block.
   using Stop = std::function<bool()>;
 
-  /// Runs the items in random order, with one of M neighbouring items in a batch, so that few conflict. A
-  /// batch slides along the list, so that its memory is near.
+  /// Runs the items in random order, with one of M neighbouring items in a batch, so that few conflict.
+  /// Batches advance along the list, for memory locality.
   ///
   /// \param items in the order of the mesh's space-filling curve.
   /// \throws Interrupted or OutOfTime between batches.
@@ -56,13 +56,13 @@ class BlockRunner {
   void each_star(
       const std::vector<Index>& points, Operation kind, const std::function<Outcome(Workspace&)>& operation,
       const Stop& stop = [] { return false; });
-  /// Runs the items in the order given.
+  /// Runs the items in the given order.
   void tets_in_order(const std::vector<TetSnapshot>& items, const TetAttempt& attempt);
 
   /// Calls `observer` with each winner, in their order, before any of the batch is committed.
   void set_observer(std::function<void(const Proposal&)> observer) { observer_ = std::move(observer); }
 
-  /// Counts since the last call.
+  /// Totals since the last call.
   struct Totals {
     OperationCounts counts;
     std::uint64_t conflicts = 0;  ///< proposals that lost

@@ -39,7 +39,7 @@ Outcome flip_tet(Workspace& ws, const BlockRules& rules, const TetSnapshot& item
   return Outcome::no_candidate;
 }
 
-/// Splits the tet's longest surface edge if it is long for its surroundings.
+/// Splits the tet's longest surface edge if it is long relative to its surroundings.
 Outcome split_tet(Workspace& ws, const BlockRules& rules, const TetSnapshot& item, float bad_quality) {
   const EditableMesh& mesh = ws.mesh;
   if (!exists(mesh, item) || mesh.quality(item.tet) > bad_quality) return Outcome::stale;
@@ -60,7 +60,7 @@ Outcome split_tet(Workspace& ws, const BlockRules& rules, const TetSnapshot& ite
   return insert_in_edge(ws, rules, item.tet, longest, InsertionPlace::centre, false);
 }
 
-/// Whether the centre of the gathered star has an edge that is short for the star.
+/// Whether the centre of the gathered star has an edge that is short relative to the star.
 bool crowded(const EditableMesh& mesh, const Star& star) {
   double shortest2 = std::numeric_limits<double>::infinity(), volume = 0;
   for (const Vec3& p : star.positions)

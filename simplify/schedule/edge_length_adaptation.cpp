@@ -92,7 +92,7 @@ class EdgeLengthAdaptation {
                             [&](Workspace& ws) { return collapse(ws, rules); });
   }
 
-  /// Splits the edge of each tet that is too long by the largest factor at its midpoint.
+  /// Splits, at its midpoint, the edge of each tet that exceeds its max length by the largest factor.
   void split_long() {
     tools_.runner.tets(
         area_.bad_tets(1),

@@ -9,13 +9,13 @@ namespace tetwright {
 
 struct SizePlan {
   const char* kind;  ///< kind of its rounds in the report
-  double angle;  ///< steradians: better shapes stay better than it; worse ones are improved between rounds
+  double angle;      ///< steradians: better shapes stay above it; worse ones are improved between rounds
   std::size_t min_tets, max_tets;
 };
 
 /// Collapses edges shorter than BlockRules::sizes allows and halves longer ones, with flips and smoothing
-/// between, until few are left or rounds gain little. On the way shapes may get worse, down to a share of the
-/// bound.
+/// between, until few are left or rounds gain little. Meanwhile shapes may get worse, down to a fraction of
+/// the bound.
 ///
 /// \throws Interrupted, OutOfTime.
 /// \pre The rules have sizes. The mesh is compacted and rated by shape.

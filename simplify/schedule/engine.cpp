@@ -25,7 +25,8 @@ Engine::Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, P
   rules.objective.quality = TetQuality::for_target(mesh_.total_volume(), options.target_tets, options.beta);
   rules.objective.shape = options.objective;
   rules.error.gamma = options.gamma;
-  // Keep patches from the first collapse on; without patches only improvement needs the projection.
+  // Patches must be preserved from the first collapse on. Without patches, only improvement needs the
+  // projection.
   if (projection_.has_patches()) rules.project_onto(projection_, mesh_.diagonal());
 }
 
@@ -46,7 +47,7 @@ void Engine::compact() {
   } else {
     grid_.rebuild(mesh_, min_cell, numbers.points);
   }
-  // An embedded mesh stays embedded: no operation undoes it.
+  // An embedded mesh stays embedded, since every operation preserves this.
   if (first) rules.embedded = mesh_.all_positive() && grid_.embedded();
 }
 

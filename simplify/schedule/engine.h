@@ -14,7 +14,7 @@
 namespace tetwright {
 
 /// State shared by the schedules: the mesh with its constraints and rules, the block runner, the report.
-/// Steps on it are functions of their own: selection.h chooses tets and points, fitting_sweeps.h moves the
+/// Steps that use it are free functions: selection.h chooses tets and points, fitting_sweeps.h moves the
 /// surface.
 class Engine {
  public:
@@ -46,8 +46,8 @@ class Engine {
   InputSamples& input_samples() { return samples_; }
   BlockRules rules;
 
-  /// Compacts the mesh, leaves free slots for operations that add, and rebuilds the grid. Every schedule
-  /// calls it first, and rate_all() after setting its objective.
+  /// Compacts the mesh, leaves free slots for operations that add elements, and rebuilds the grid. Every
+  /// schedule calls this first, and rate_all() after setting its objective.
   void compact();
   /// Compacts the mesh and gives its triangles samples: InputSamples::assign().
   /// \pre input_samples().keep_surface() has been called.
@@ -56,7 +56,7 @@ class Engine {
   ///
   /// \param target_length may be null.
   void set_sizes(const SizeField* target_length, double min_edge, double max_edge);
-  /// The sizes that set_sizes() has made.
+  /// The sizes set by set_sizes().
   const EdgeSizes& sizes() const { return *sizes_; }
   /// EdgeSizes::allow_shorter().
   void allow_shorter_edges() { sizes_->allow_shorter(); }
@@ -64,11 +64,11 @@ class Engine {
   void throw_if_stopped() const {
     if (progress_) progress_->throw_if_stopped();
   }
-  /// compact() if so many slots are dead that it pays off.
+  /// Calls compact() if so many slots are dead that it pays off.
   void compact_if_sparse();
   /// Rates every tet by rules.objective.
   void rate_all();
-  /// Compacts the mesh, rates its tets by shape and sets the rules that all improvement shares. Call it
+  /// Compacts the mesh, rates its tets by shape and sets the rules common to all improvement. Call this
   /// before the first run_bulk_improvement() or run_improvement().
   void begin_improvement();
 

@@ -7,15 +7,15 @@
 
 namespace tetwright {
 
-// Sweeps that move points of the surface nearer to the input's. `floor`: quality above which the worst tet at
-// a moved point must stay, or hardly get worse.
+// Sweeps that move points of the surface nearer to the input's. The worst tet at a moved point must stay
+// above the quality `floor`, or hardly get worse.
 
 /// fit_to_samples() for all points of boundary and interfaces.
 void fit_interfaces(Engine& engine, float floor);
-/// fit_to_samples() for the points of the listed tets and around them, weighting the farthest samples most.
+/// fit_to_samples() for the points of and around the listed tets, weighting the farthest samples most.
 void fit_farthest_samples(Engine& engine, const std::vector<TetSnapshot>& tets, float floor);
-/// fit_to_crease() for all boundary points off their feature edge or corner; a point that cannot move there
-/// is collapsed along its feature edge.
+/// fit_to_crease() for all boundary points off their feature edge or corner. A point that cannot be moved
+/// onto it is collapsed along its feature edge.
 void fit_feature_edges(Engine& engine);
 
 }  // namespace tetwright

@@ -5,8 +5,8 @@
 
 namespace tetwright {
 
-/// Bounds of shape_quality() below which a tet is worked on, and below which points may leave the surface for
-/// it.
+/// Bounds of shape_quality() below which a tet is worked on, and below which its points may leave the
+/// surface.
 struct ImproveBounds {
   float bad_quality, leave_surface;
 };
@@ -24,11 +24,11 @@ struct ImproveRules {
 Outcome improve_tet(Workspace& ws, const ImproveRules& step, const TetSnapshot& item);
 
 /// Tries a random flip of the tet that leaves only good tets (Acceptance::good_enough) or improves the worst:
-/// it changes the connectivity near tets that no operation improves.
+/// this changes the connectivity near tets that no operation improves.
 Outcome perturb_tet(Workspace& ws, const BlockRules& perturbation, const TetSnapshot& item);
 
-/// Rules for edge removals and for collapses that cut off an ear. These sweep much volume though the surface
-/// hardly moves, so they are bounded by the distance from the reference instead of E.
+/// Rules for edge removals and for collapses that cut off an ear. These sweep a large volume although the
+/// surface hardly moves, so they are bounded by the distance from the reference instead of E.
 ///
 /// \param edge usual edge length, working coordinates.
 BlockRules relaxed_rules(const BlockRules& rules, double edge);

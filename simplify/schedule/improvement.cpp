@@ -56,9 +56,9 @@ class ImprovementLoop {
     return static_cast<float>(shape_quality_bound(rules_.objective.shape, angle));
   }
 
-  /// Judges the last round by the bad tets that it left: false if the last rounds gained too little. Decides
-  /// whether the next one also moves the points around the bad tets and perturbs; if the plan is not fast,
-  /// the first one always perturbs.
+  /// Rates the last round by the bad tets that it left: false if the last rounds gained too little. Decides
+  /// whether the next round also moves the points around the bad tets and perturbs; if the plan is not fast,
+  /// the first round always perturbs.
   bool worth_a_round(const std::vector<TetSnapshot>& bad, bool first) {
     const bool any_may_leave_surface = std::any_of(bad.begin(), bad.end(), [&](const TetSnapshot& t) {
       return mesh_.quality(t.tet) < bounds_.leave_surface;
@@ -66,7 +66,8 @@ class ImprovementLoop {
     stuck_ = static_cast<double>(bad.size()) > ImprovementRounds::stuck_above * static_cast<double>(min_bad_);
     if (plan_.brief && stuck_ && !any_may_leave_surface) return false;
     const double gain = 1 - static_cast<double>(bad.size()) / static_cast<double>(min_bad_);
-    // If a large share is bad, the interfaces are the reason, and more rounds would take long for little.
+    // If a large share of the tets is bad, interfaces are the cause, and more rounds would gain little for
+    // their time.
     const bool many = static_cast<double>(bad.size()) >
                       ImprovementRounds::many_bad * static_cast<double>(area_.tet_count());
     idle_ =
@@ -79,7 +80,8 @@ class ImprovementLoop {
                                                    : ImprovementRounds::max_idle_when_good))
       return false;
     min_bad_ = std::min(min_bad_, bad.size());
-    // Wait until perturbation on the surfaces has gained nothing: points that leave them do not return.
+    // Wait until perturbation within the surfaces gains no more, since points that leave their surface do not
+    // return.
     const bool perturbed = plan_.fast || perturbs_;
     last_resort_ = stuck_ && ((idle_ > 0 && perturbed) || (plan_.fast && !many));
     perturbs_ = last_resort_ || (!plan_.fast && (stuck_ || first));
@@ -95,8 +97,8 @@ class ImprovementLoop {
             ? 0
             : ImprovementRounds::kept_share * static_cast<double>(plan_.target_tets - plan_.min_tets);
     rules_.count.min = relaxed_.count.min = plan_.min_tets + static_cast<std::size_t>(kept);
-    // Make room if the count is more than halfway from the target to the upper bound, which may be the
-    // largest number there is.
+    // Make room if the count is more than halfway from the target to the upper bound. In floating point,
+    // since the bound may be the max of its type.
     if (2 * static_cast<double>(mesh_.live_tets()) >
         static_cast<double>(plan_.target_tets) + static_cast<double>(plan_.max_tets))
       make_room(bad);
@@ -139,8 +141,7 @@ class ImprovementLoop {
     runner_.each_star(around, Operation::optimise, [&](Workspace& ws) { return optimise(ws, rules_); });
   }
 
-  /// Drops tets that the last round tried, unless something around them has changed or this round allows
-  /// more.
+  /// Drops tets that the last round tried, unless their surroundings have changed or this round allows more.
   std::vector<TetSnapshot> worth_trying(const std::vector<TetSnapshot>& bad) const {
     if (last_resort_) return bad;
     std::vector<TetSnapshot> tries;

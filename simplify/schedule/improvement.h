@@ -12,16 +12,16 @@ struct ImprovementPlan {
   const char* kind;  ///< kind of its rounds in the report
   /// Steradians: tets worse than the shape_quality_bound() of this angle are worked on.
   double angle;
-  /// Likewise: for tets worse than this, points of the surface may leave it a little.
+  /// Likewise: for tets worse than this, points of the surface may leave it slightly.
   double leave_surface_angle;
   std::size_t target_tets, min_tets, max_tets;
-  /// Flips before smoothing, and uses the last resort as soon as a round gains little and few tets are bad:
-  /// half the time of improve(), but less gain where thin layers of many materials keep most points from
-  /// moving far. Otherwise the first round perturbs: after a simplification that gives better shapes on
-  /// nearer surfaces.
+  /// Flips before smoothing, and uses the last resort as soon as a round gains little and few tets are bad.
+  /// Takes half the time of improve(), but gains less if thin layers of many materials prevent most points
+  /// from moving far. If false, the first round perturbs, which gives better shapes and smaller surface
+  /// distances after a simplification.
   bool fast;
-  /// Ends as soon as a round gains little and no tet is below leave_surface_angle: the last of the tets above
-  /// it take as long as all others.
+  /// Ends as soon as a round gains little and no tet is below leave_surface_angle, since the last bad tets
+  /// above it take as long as all others.
   bool brief;
   int max_rounds;
 };

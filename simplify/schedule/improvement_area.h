@@ -13,11 +13,11 @@ namespace tetwright {
 class ImprovementArea {
  public:
   virtual ~ImprovementArea() = default;
-  /// Number of its tets, to which shares refer.
+  /// Number of tets in the area, to which fractions refer.
   virtual std::size_t tet_count() const = 0;
-  /// Usual edge length, working coordinates.
+  /// Typical edge length, working coordinates.
   virtual double usual_edge() const = 0;
-  // Results are ascending: the order of the curve after compaction.
+  // Results are ascending: the order of the space-filling curve after compaction.
 
   /// The tets of quality `limit` or less.
   virtual std::vector<TetSnapshot> bad_tets(float limit) = 0;

@@ -11,14 +11,14 @@
 
 namespace tetwright {
 
-/// The surface that a mesh stands for, and its samples once the mesh's triangles own some. Call nothing while
-/// a task runs.
+/// The surface that a mesh represents and, once assigned to the mesh's triangles, samples of it. Must not be
+/// used while a task runs.
 class InputSamples {
  public:
   explicit InputSamples(ConstrainedMesh& constrained) : constrained_(constrained) {}
 
-  /// Keeps the input's surface: the `surface` (input units) that the mesh was made from, or without it the
-  /// mesh's own.
+  /// Keeps the input's surface: `surface` (input units), from which the mesh was made, or, if null, the
+  /// mesh's own surface.
   ///
   /// \param measured deviation() will be called.
   /// \pre No operation has run.
@@ -26,7 +26,7 @@ class InputSamples {
   /// Sets the max distance, working coordinates, between the points at which new triangles are tested.
   /// \pre assign() has not been called.
   void set_spacing(double spacing) { spacing_ = spacing; }
-  /// Gives the mesh's triangles samples of the input's surface in place of those they own, some ten for each
+  /// Replaces the samples of the mesh's triangles by new samples of the input's surface, about ten for each
   /// triangle with edges of length `edge`, scaled by BlockRules::scale_at().
   /// \pre keep_surface() has been called; the grid has just been rebuilt.
   void assign(double edge, const BlockRules& rules);
@@ -35,8 +35,8 @@ class InputSamples {
   /// Adds a sample at each part of the input's surface that is farther than `limit` (working coordinates)
   /// from the mesh.
   ///
-  /// \return face_key() of the boundary and interface faces that are that far from the input's surface, or
-  ///   nearest to a part of it that is; ascending.
+  /// \return face_key() of the boundary and interface faces that are farther than that from the input's
+  ///   surface, or nearest to a part of it that is; ascending.
   /// \pre assigned().
   std::vector<Triangle> add_far_samples(double limit);
   /// Two-sided distance between the mesh's surface and the input's, with proven bounds; wider bounds once the

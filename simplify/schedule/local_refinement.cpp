@@ -17,7 +17,7 @@ namespace {
 
 using Refinement = SimplifyTuning::Refinement;
 
-/// The longest edge of a tet, or with `surface` of its boundary and interface faces; index into tet_edges.
+/// The longest edge of a tet or, with `surface`, of its boundary and interface faces; index into tet_edges.
 int longest_edge(const EditableMesh& mesh, const TetSnapshot& item, bool surface) {
   int longest = 0;
   double max_length = 0;
@@ -31,7 +31,7 @@ int longest_edge(const EditableMesh& mesh, const TetSnapshot& item, bool surface
   return longest;
 }
 
-/// Halves an edge of each tet if the resulting tets can be improved to that angle.
+/// Halves the longest edge of each tet if the resulting tets keep a fraction of the shape bound.
 void halve(const ImprovementTools& tools, const std::vector<TetSnapshot>& tets, const ImprovementPlan& plan,
            double angle, bool surface) {
   EditableMesh& mesh = tools.mesh;
@@ -52,7 +52,7 @@ void halve(const ImprovementTools& tools, const std::vector<TetSnapshot>& tets, 
   round.finish();
 }
 
-/// Whether rounds still gain: the number of tets left has reached a new minimum recently.
+/// Tells whether rounds still gain: whether the number of remaining tets reached a new minimum recently.
 class Gain {
  public:
   bool goes_on(std::size_t left) {
@@ -83,7 +83,7 @@ void refine_bad_tets(const ImprovementTools& tools, ImprovementArea& area, Impro
 void refine_beyond_tolerance(Engine& engine, ImprovementArea& area, const ImprovementPlan& plan, double angle,
                              double limit) {
   const ImprovementTools tools{engine.mesh(), engine.runner(), engine.rules, engine.recorder()};
-  // Use this bound, not the plan's, which leaves a point less room than the tolerance may need.
+  // Use this bound, since the plan's may leave points too little room to reach the tolerance.
   const auto floor = static_cast<float>(shape_quality_bound(engine.rules.objective.shape, angle));
   for (int i = 0; i < Refinement::max_rounds; ++i) {
     const std::vector<TetSnapshot> far =

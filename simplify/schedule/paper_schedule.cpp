@@ -89,7 +89,7 @@ Outcome paper_step(Workspace& ws, const BlockRules& rules, const TetSnapshot& it
     if (remove_edge(ws, rules, item.tet, e, basic_reach) == Outcome::done) return Outcome::done;
   if (ws.count(Operation::collapse, collapse_tet(ws, rules, item)) == Outcome::done) return Outcome::done;
   if (smooth_points(ws, rules, item, 0) == Outcome::done) return Outcome::done;
-  // A new point must improve the tets around it: tets that annealing accepts would be split for ever.
+  // A new point must improve the tets around it. With annealing, tets would be split indefinitely.
   BlockRules strict = rules;
   strict.acceptance.worse_probability = 0;
   if (insert_in_tet(ws, strict, item.tet, InsertionPlace::centre) == Outcome::done) return Outcome::done;
@@ -137,7 +137,7 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
   for (int i = 0; i < options.max_iterations && idle < Schedules::max_idle_iterations; ++i) {
     reached = reached || mesh.live_tets() <= target_tets;
     if (reached) {
-      // Second stop: the number of bad tets tells whether anything is still gained.
+      // Second stopping criterion: the number of bad tets shows whether there is still gain.
       const std::size_t now = below_angle(mesh, options.min_solid_angle);
       if (now == 0) break;
       idle = now < bad ? 0 : idle + 1;
@@ -147,12 +147,13 @@ void run_paper_schedule(Engine& engine, const SimplifyOptions& options) {
     RoundRecorder::Round round(engine.recorder(), "simplify", error);
     IterationReport& it = round.report();
     it.percent = percent;
+    it.tets_by_quality = tets_by_quality(mesh);
     const auto before = static_cast<double>(it.tets_before);
     const double log_now = portable_log(std::max(before / target, 1.0));
     rules.acceptance.worse_probability =
         reached ? 0 : Schedules::first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
-    // Before the target is reached, allow all that does not undo earlier iterations; then only what keeps or
-    // restores the count.
+    // Before the target is reached, allow any count that does not undo earlier iterations; afterwards only
+    // changes that keep or restore the target count.
     rules.count.max =
         reached ? static_cast<std::size_t>(target * (1 + PaperSchedule::count_slack)) : it.tets_before;
     const float limit = quality_cutoff(mesh, percent);

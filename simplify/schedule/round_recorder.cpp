@@ -33,7 +33,7 @@ void RoundRecorder::Round::finish() {
 
 void RoundRecorder::begin_stage(const char* name) {
   if (!progress_) return;
-  // If time is over, leave it to the first batch of the stage to say so, when the current mesh can be kept.
+  // If the deadline has passed, let the first batch of the stage throw, so that the current mesh can be kept.
   if (progress_->cancelled()) throw Interrupted();
   progress_->begin_stage(name);
 }

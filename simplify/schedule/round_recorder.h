@@ -9,7 +9,7 @@
 
 namespace tetwright {
 
-/// Records the rounds of work on a mesh in the report and tells the progress.
+/// Records the rounds of work on a mesh in the report and updates the progress.
 class RoundRecorder {
  public:
   /// `report` and `progress` may be null.

@@ -2,8 +2,10 @@
 #include "simplify/schedule/selection.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
+#include <tuple>
 
 #include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
@@ -93,6 +95,29 @@ float quality_cutoff(const EditableMesh& mesh, double percent) {
       });
   std::nth_element(in_bin.begin(), in_bin.begin() + static_cast<std::ptrdiff_t>(wanted), in_bin.end());
   return in_bin[wanted];
+}
+
+decltype(IterationReport::tets_by_quality) tets_by_quality(const EditableMesh& mesh) {
+  using Counts = decltype(IterationReport::tets_by_quality);
+  constexpr std::size_t bins = std::tuple_size_v<Counts>;
+  // Cubes of the upper ends of all bins but the last, since the mesh stores cubes.
+  std::array<float, bins - 1> ends;
+  for (std::size_t b = 0; b < ends.size(); ++b) {
+    const float end = static_cast<float>(b + 1) / bins;
+    ends[b] = end * end * end;
+  }
+  std::array<std::atomic<std::size_t>, bins> shared{};
+  parallel_for(0, mesh.tet_slots(), 16 * Grains::slots, [&](std::size_t begin, std::size_t end) {
+    Counts counts{};
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto t = static_cast<Index>(i);
+      if (!mesh.dead(t)) ++counts[std::upper_bound(ends.begin(), ends.end(), mesh.quality(t)) - ends.begin()];
+    }
+    for (std::size_t b = 0; b < bins; ++b) shared[b].fetch_add(counts[b], std::memory_order_relaxed);
+  });
+  Counts counts{};
+  for (std::size_t b = 0; b < bins; ++b) counts[b] = shared[b];
+  return counts;
 }
 
 std::vector<TetSnapshot> bad_tets(const EditableMesh& mesh, float limit) {

@@ -7,19 +7,24 @@
 #include "simplify/mesh/editable_mesh.h"
 #include "simplify/operations/objective.h"
 #include "simplify/schedule/block_runner.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright {
 
-// Choice of the tets and points that a round works on. Call these only while no task runs. They are parallel,
-// change nothing, and the results do not depend on the threads. Lists are in the order of the mesh's curve,
-// each item once.
+// Selection of the tets and points on which a round works. Call these only while no task runs. They are
+// parallel and change nothing; results do not depend on the number of threads. Lists are in the order of the
+// mesh's space-filling curve, each item once.
 
 /// The quality below which `percent` of the tets lie; 1 for all tets, 0 for an empty mesh.
 float quality_cutoff(const EditableMesh& mesh, double percent);
-/// Share of the tets whose shape is worse than the shape_quality_bound() of a solid angle (steradians),
-/// whatever objective rates them.
+/// Number of tets by Quality(t), worst first, in equal bins from 0 to 1.
 ///
-/// \param objective only its shape counts.
+/// \pre the objective in force is Objective::Kind::paper, which stores Quality(t)^3
+decltype(IterationReport::tets_by_quality) tets_by_quality(const EditableMesh& mesh);
+/// Fraction of the tets whose shape is worse than the shape_quality_bound() of a solid angle (steradians),
+/// independent of stored qualities.
+///
+/// \param objective only its shape measure is used.
 double share_below(const EditableMesh& mesh, const Objective& objective, double angle);
 
 /// The tets of quality `limit` or less.

@@ -37,7 +37,7 @@ void flip_and_smooth_block(Engine& engine, float limit) {
   engine.runner().tets(
       bad_tets(mesh, limit),
       [&](Workspace& ws, const TetSnapshot& item, int) {
-        // The tet may have been improved by a neighbour's operation since it was listed.
+        // A neighbour's operation may have improved the tet since it was listed.
         if (!exists(mesh, item) || mesh.quality(item.tet) > limit) return Outcome::stale;
         for (int f = 0; f < 4; ++f)
           if (remove_face(ws, engine.rules, item.tet, f, basic_reach) == Outcome::done) return Outcome::done;
@@ -53,10 +53,10 @@ void flip_and_smooth_block(Engine& engine, float limit) {
       [] { return false; });
 }
 
-/// Runs the loop down to a target.
+/// Runs the block iteration down to a target.
 ///
-/// \param counted the target is the one asked for, not a stage on the way to as few tets as the tolerance
-///   allows.
+/// \param counted whether the target is the final one, not an intermediate stage towards as few tets as the
+///   tolerance allows.
 /// \return whether the target was reached.
 bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loop_target,
                  bool counted = true) {
@@ -71,7 +71,7 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
   double& error = rules.error.max.emplace(TunedLoop::first_error_edges * rules.objective.quality.ideal_edge);
   rules.acceptance.worse_floor = TunedLoop::annealing_floor;
   rules.collapse.distance_weight = TunedLoop::distance_weight;
-  // Rounded up: for small targets the slack is less than one tet.
+  // Rounded up, since for small targets the slack is less than one tet.
   rules.count.min = static_cast<std::size_t>(std::ceil(target * (1 - Closing::slack)));
   engine.rate_all();
   double percent = Schedules::percent_step;
@@ -88,6 +88,7 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
     RoundRecorder::Round round(engine.recorder(), "simplify", error);
     IterationReport& it = round.report();
     it.percent = percent;
+    it.tets_by_quality = tets_by_quality(mesh);
     rules.count.max = it.tets_before;
     const double log_now = portable_log(static_cast<double>(it.tets_before) / target);
     rules.acceptance.worse_probability =
@@ -100,7 +101,7 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
     collapse_block(engine, limit, loop_target);
     const std::size_t collapsed = mesh.live_tets();
     const double removed = 1 - static_cast<double>(collapsed) / static_cast<double>(it.tets_before);
-    // If collapses stall, other connectivity and positions may let them continue.
+    // If collapses stall, changes of connectivity and positions may allow more.
     if (collapsed > loop_target && (static_cast<double>(collapsed) < TunedLoop::flips_below * target ||
                                     (removed < TunedLoop::min_removed && percent >= 100)))
       flip_and_smooth_block(engine, removed < TunedLoop::min_removed && percent >= 100
@@ -112,7 +113,7 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
                                     static_cast<double>(collapsed) < TunedLoop::fits_below * target))
       fit_interfaces(engine, 1);
     round.finish();
-    // A larger E helps only if E is what refuses.
+    // A larger E helps only if E causes the refusals.
     const bool error_refuses =
         error < max_error &&
         TunedLoop::error_refusals_inverse * it.counts.of(Operation::collapse, Outcome::surface_error) >
@@ -155,7 +156,8 @@ void run_tuned_schedule(Engine& engine, const SimplifyOptions& options, std::siz
   if (loop_target > 0) {
     simplify_to(engine, options, loop_target);
   } else {
-    // As few as the tolerance allows: tet sizes follow one target after the other.
+    // As few tets as the tolerance allows: run towards successive targets, each of which sets the ideal tet
+    // size.
     bool reached = true;
     while (reached && mesh.live_tets() > 1) {
       const double target =

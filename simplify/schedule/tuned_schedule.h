@@ -6,9 +6,9 @@
 
 namespace tetwright {
 
-/// Runs the block loop with the tuned schedule (README.md, The tuned schedule), down to the target.
+/// Runs the block iteration with the tuned schedule (README.md, The tuned schedule) down to the target.
 ///
-/// \param loop_target 0: as few tets as the tolerance allows.
+/// \param loop_target number of tets; 0: as few as the tolerance allows.
 /// \throws Interrupted, OutOfTime.
 /// \pre The engine is compacted and keeps its input surface.
 void run_tuned_schedule(Engine& engine, const SimplifyOptions& options, std::size_t loop_target);

@@ -20,7 +20,7 @@ inline MesherOptions cells_of(double cell, double adaptivity = MesherOptions().a
   return options;
 }
 
-/// Meshes a volume and checks the invariants that hold for any.
+/// Meshes a volume and checks the invariants that hold for every mesh.
 inline DenseMesh checked_mesh(const LabelInput& labels, const MesherOptions& options) {
   DenseMesh meshed = mesh_labels(labels, options, nullptr);
   for (const MeshFinding& f : check_mesh(meshed.mesh)) ADD_FAILURE() << mesh_finding_line(f);

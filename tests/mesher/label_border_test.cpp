@@ -13,8 +13,8 @@
 namespace tetwright::label_border_test {
 namespace {
 
-/// Checks that all of the boundary near the volume's border lies in it, with the patch of its side, and that
-/// each side has the area of the labels there.
+/// Checks that the boundary near the volume's border lies exactly on it, with the patch of its side, and that
+/// its area on each side is that of the labels.
 /// \param tolerance relative
 /// \return the number of faces on the border
 std::size_t expect_cut_off(const LabelInput& labels, const TetMesh& mesh, double tolerance) {

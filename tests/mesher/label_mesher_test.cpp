@@ -15,7 +15,7 @@
 namespace tetwright::label_mesher_test {
 namespace {
 
-/// Checks the promises for cells no larger than half a voxel.
+/// Checks the guarantees for cells no larger than half a voxel.
 void expect_faithful(const LabelInput& labels, const TetMesh& mesh) {
   const LabelComparison f = compare_with_voxels(labels, mesh);
   EXPECT_EQ(f.lost, 0u) << comparison_line(f);
@@ -264,7 +264,8 @@ TEST(LabelMesher, ShapesOfTetsInCellsOfAVoxel) {
   for (const LabelInput* labels : {&ball, &cube, &slabs}) expect_good_shapes(*labels);
 }
 
-// Parts are two voxels thick here too, but four labels meet in every line between them: more tets are bad.
+// Parts are two voxels thick here as well, but four labels meet along every line between them, so more tets
+// are bad.
 TEST(LabelMesher, ShapesOfTetsWhereManyLabelsMeet) {
   const LabelInput bars =
       make_labels({12, 12, 12}, [](int x, int, int z) { return x / 2 % 2 + 2 * (z / 4 % 2); });
@@ -326,7 +327,8 @@ TEST(LabelMesher, RightPlacesInAnyDirections) {
   }
 }
 
-// A label that fills the volume ends at the border of the voxels, half a step beyond their centres.
+// A label that fills the volume ends at the border of the outermost voxels, half a voxel beyond their
+// centres.
 TEST(LabelMesher, LabelsTouchingTheBorder) {
   const LabelInput full = make_labels({9, 8, 7}, [](int, int, int) { return 4; });
   const TetMesh mesh = checked_mesh(full, 0.5).mesh;

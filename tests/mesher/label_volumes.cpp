@@ -66,7 +66,7 @@ class Voxels {
     const std::array<int, 3> centre{static_cast<int>(std::lround(p.x())),
                                     static_cast<int>(std::lround(p.y())),
                                     static_cast<int>(std::lround(p.z()))};
-    // Faces whose closest end lies in a ring are no closer than ring - 1.
+    // Faces whose nearest corner lies in a ring are no closer than ring - 1.
     for (int ring = 0; ring <= static_cast<int>(far); ++ring) {
       if (of_pair <= ring - 1.0) break;
       for (int dz = -ring - 1; dz <= ring; ++dz)

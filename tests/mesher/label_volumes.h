@@ -17,10 +17,10 @@ LabelInput make_labels(const std::array<int, 3>& size, const VoxelLabels& label,
                        const Eigen::Matrix3d& directions = Eigen::Matrix3d::Identity(),
                        const Vec3& origin = Vec3::Zero());
 
-/// Measures how well a mesh of a segmented volume keeps its promises.
+/// Measures how well a mesh of a segmented volume meets its guarantees.
 struct LabelComparison {
   std::size_t centres = 0;     ///< voxels that have a neighbour of their label
-  std::size_t lost = 0;        ///< those of them whose centre is not in a tet of their label
+  std::size_t lost = 0;        ///< such voxels whose centre is not in a tet of their label
   std::array<int, 3> first{};  ///< index of one of them
   std::size_t lone_lost = 0;   ///< voxels without such a neighbour whose centre is in another label
   double moved = 0;            ///< largest distance of an interface from faces of any two labels, voxels

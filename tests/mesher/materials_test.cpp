@@ -85,7 +85,7 @@ TEST(Materials, LayersHaveTheirThickness) {
 }
 
 TEST(Materials, ThinLayersStayWhole) {
-  // Voxels of 2 / 8: layers of 1.6, 0.8 and 0.32 of them.
+  // Voxels have the size 2 / 8; layers are 1.6, 0.8 and 0.32 voxels thick.
   for (double voxels : {1.6, 0.8, 0.32}) {
     const double thickness = voxels * 2 / 8;
     const auto meshed = mesh_of(make_input({make_sphere(1, {0.003, 0.002, 0.001}, 5)}, {thickness}), 8);
@@ -153,9 +153,10 @@ TEST(Materials, TheSameBytesForAnyNumberOfThreads) {
 }
 
 TEST(Materials, RefusesWhatIsCarvedAwayOrTooDeep) {
-  // The outermost surface, listed last, covers all.
+  // The outermost surface, listed last, covers all others.
   EXPECT_THROW(mesh_of(make_input({make_sphere(0.5), make_sphere(1)}), 24), InputError);
-  // A few lattice points are in it, or one, or none: it is meshed or refused, never lost.
+  // Depending on the radius it contains a few lattice points, one or none: it is meshed or refused, never
+  // lost.
   for (double radius : {0.02, 0.04, 0.06, 0.08, 0.1, 0.12}) {
     try {
       const TetMesh mesh =

@@ -26,7 +26,7 @@ MesherOptions resolution(int n) {
   return options;
 }
 
-/// Meshes, checks every promise and returns the topology.
+/// Meshes a surface, checks every guarantee and returns the topology.
 SolidTopology meshed_topology(const TriangleMesh& surface, int n, TetMesh* out = nullptr) {
   TetMesh mesh = mesh_of(surface, resolution(n)).mesh;
   EXPECT_EQ(broken_promise(mesh.points, mesh.tets), "");
@@ -189,7 +189,7 @@ TEST(Mesher, RefusesWhatCannotBeMeshed) {
 TEST(Mesher, RefusesWhatDoesNotFitInMemory) {
   MesherOptions options = resolution(4096);
   options.uniform = true;
-  EXPECT_THROW(mesh_of(make_sphere(1), options), OutputError);  // immediately: the memory does not suffice
+  EXPECT_THROW(mesh_of(make_sphere(1), options), OutputError);  // immediately, for lack of memory
 }
 
 TEST(Mesher, EstimatesWithinAFactor) {

@@ -211,7 +211,7 @@ TEST(SurfaceRegions, OfSurfacesThatMeetAreKept) {
   std::set<std::string> names;
   for (const auto& [patch, group] : dense.mesh.patch_groups) names.insert(group.name);
   EXPECT_EQ(names, (std::set<std::string>{"a1", "a2", "b1", "b2"}));
-  // Known to a cell only, like the curve in which the surfaces meet.
+  // Accurate to a cell only, like the curve in which the surfaces meet.
   EXPECT_FALSE(dense.reference->has_patches());
 }
 

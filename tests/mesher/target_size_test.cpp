@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Cells chosen for a wanted number of tets.
+// Cells chosen for a target number of tets.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -58,7 +58,7 @@ TEST(TargetSize, VolumesTakeLargerCellsForFewTetsAndSmallerOnesForMany) {
   EXPECT_GE(many, 0.25);
   EXPECT_THROW(cell_size_for_target(labels, 0, {}), UsageError);
 
-  // Plenty of tets, and the volume is kept.
+  // The result has enough tets and preserves the volume.
   const DenseMesh dense = mesh_with(labels, few);
   EXPECT_GT(dense.mesh.tets.size(), 20u * 500);
   EXPECT_LT(compare_with_voxels(labels, dense.mesh).worst_volume, 0.02);
@@ -75,7 +75,7 @@ TEST(TargetSize, CellsOfVolumesStaySmallForSmallLabelsAndWhereLabelsAreThin) {
     return (Vec3(x % 32, y, z) - Vec3::Constant(15.5)).squaredNorm() < 10 * 10 ? 1 : 0;
   };
   EXPECT_EQ(cell_size_for_target(make_labels({64, 32, 32}, two_balls), 50, {}), 1);
-  // Sheets of two voxels take cells of a voxel everywhere.
+  // Sheets of two voxels require voxel-sized cells everywhere.
   const LabelInput sheets = make_labels({48, 48, 48}, [](int, int, int z) { return 1 + z / 2 % 2; });
   EXPECT_EQ(cell_size_for_target(sheets, 500, {}), 1);
 }

@@ -106,7 +106,7 @@ TriangleMesh make_moebius_strip(int around) {
       mesh.points.emplace_back(r * std::cos(u), r * std::sin(u), side * std::sin(u / 2));
     }
   }
-  // After a full turn the two sides have changed places.
+  // After a full turn the two sides are swapped.
   const auto at = [&](int i, int side) { return static_cast<Index>(i < around ? 2 * i + side : 1 - side); };
   for (int i = 0; i < around; ++i) {
     mesh.triangles.push_back({at(i, 0), at(i + 1, 0), at(i + 1, 1)});

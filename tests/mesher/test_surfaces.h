@@ -9,11 +9,11 @@
 
 namespace tetwright {
 
-/// Sphere by three or more subdivisions of an octahedron: 8 * 4^subdivisions triangles, wound outwards.
+/// Sphere by three or more subdivisions of an octahedron: 8 * 4^subdivisions triangles, oriented outwards.
 TriangleMesh make_sphere(double radius, const Vec3& centre = Vec3::Zero(), int subdivisions = 4);
-/// Torus around the z axis, wound outwards.
+/// Torus around the z axis, oriented outwards.
 TriangleMesh make_torus(double ring_radius, double tube_radius, int around = 48, int across = 24);
-/// Axis-aligned box of twelve triangles, wound outwards.
+/// Axis-aligned box of twelve triangles, oriented outwards.
 TriangleMesh make_box(const Vec3& low, const Vec3& high);
 /// One-sided strip around the z axis.
 TriangleMesh make_moebius_strip(int around = 24);
@@ -25,7 +25,7 @@ TriangleMesh punctured(TriangleMesh mesh, int step);
 TriangleMesh partly_turned_over(TriangleMesh mesh, std::size_t step);
 /// Reverses all triangles.
 TriangleMesh turned_over(TriangleMesh mesh);
-/// Concatenates both; points are not merged.
+/// Concatenates both meshes without merging points.
 TriangleMesh joined(const TriangleMesh& a, const TriangleMesh& b);
 
 /// Volume enclosed by a closed surface.
@@ -35,9 +35,9 @@ double volume(const std::vector<Vec3>& points, const std::vector<Tet>& tets);
 /// The interfaces with all patches set to 0.
 std::vector<InterfaceTriangle> without_patches(std::vector<InterfaceTriangle> interfaces);
 
-/// Describes the first broken promise of mesher/README.md; empty if all hold. Checks exact signs, faces in
-/// one or two tets, the boundary closed and manifold at edges and points, one connected star at each point,
-/// no unused point.
+/// Describes the first violated guarantee of mesher/README.md; empty if all hold. Checks exact signs, faces
+/// in one or two tets, the boundary closed and manifold at edges and points, one connected star at each
+/// point, no unused point.
 std::string broken_promise(const std::vector<Vec3>& points, const std::vector<Tet>& tets);
 
 struct SolidTopology {

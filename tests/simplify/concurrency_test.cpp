@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Run under the thread sanitizer: eight threads on one mesh, in batches so large that many of their proposals
-// conflict. Built a second time with reservations ignored (test_without_reservations), it must fail.
+// Run under the thread sanitizer: eight threads on one mesh, in batches so large that many proposals
+// conflict. A second build that ignores reservations (test_without_reservations) must fail.
 #include <gtest/gtest.h>
 
 #include "tests/simplify/meshes.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Feature edges and corners of parts stay exactly in place while the number of tets falls.
+// Feature edges and corners of parts keep their exact positions during simplification.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,8 +25,8 @@ Eigen::Matrix3d rotation() {
       .toRotationMatrix();
 }
 
-/// A unit cube of n x n x n x 6 tets, or one without a quarter, with inner points moved at random, rotated
-/// with its patches.
+/// A unit cube of n x n x n x 6 tets, optionally without a quarter, with interior points moved at random;
+/// rotated, with patches.
 TetMesh block(int n, bool quarter_missing) {
   TetMesh mesh = grid_mesh({n, n, n}, [&](int x, int y, int) -> std::optional<MaterialTag> {
     if (quarter_missing && 2 * x >= n && 2 * y >= n) return {};
@@ -57,7 +57,7 @@ double volume_of(const TetMesh& mesh) {
 }
 
 /// Expects the boundary points on the sides of the block, and the feature edges and corners of `before` on
-/// those of the mesh.
+/// those of `after`.
 void expect_exact(const TetMesh& before, const TetMesh& after) {
   for (const MeshFinding& f : check_mesh(after)) ADD_FAILURE() << mesh_finding_line(f);
   for (const InterfaceTriangle& t : after.interfaces)
@@ -120,7 +120,7 @@ TetMesh disc(int n, int layers) {
 
 TEST(Creases, ThatAreCurvedStayWithinAThousandthOfTheDiagonal) {
   TetMesh before = disc(32, 6);
-  // Tets at the four corners of the square are flat along the rim; the mesh is accepted as it is.
+  // Tets at the four corners of the square are flat along the rim; the mesh is accepted nevertheless.
   ASSERT_EQ(find_mesh_patches(before, {FeatureAngle::Rule::degrees, 40}, "disc").count, 3U);
   SimplifyOptions options;
   options.target_tets = 1500;
@@ -130,7 +130,7 @@ TEST(Creases, ThatAreCurvedStayWithinAThousandthOfTheDiagonal) {
   EXPECT_TRUE(rims.corners.empty());
   Box3 box;
   for (const Vec3& p : before.points) box.add(p);
-  // Chords of the input's own polygon are off by another 0.0005.
+  // Chords of the input's polygon deviate by another 0.0005.
   const double allowed = 0.001 * (box.high - box.low).norm() + 0.0012;
   for (const auto& [a, b] : rims.segments) {
     const Vec3 middle = (rims.points[a] + rims.points[b]) / 2;
@@ -138,7 +138,7 @@ TEST(Creases, ThatAreCurvedStayWithinAThousandthOfTheDiagonal) {
   }
 }
 
-/// A cube [0, 1]^3 with exact patches: the mesh's feature edges are off.
+/// A cube [0, 1]^3 with exact patches, from which the mesh's feature edges deviate.
 class ExactCube final : public ReferenceSurface {
  public:
   double signed_distance(const Vec3&, MaterialTag) const override { return 0; }
@@ -187,7 +187,7 @@ TEST(Creases, OfAReferenceAreReachedFromBesideThem) {
         if (before.points[t.ids[0]][a] == side && before.points[t.ids[1]][a] == side &&
             before.points[t.ids[2]][a] == side)
           t.patch = static_cast<std::uint16_t>(2 * a + side);
-  // Cut off edges and corners a little.
+  // Cut off edges and corners slightly.
   for (Vec3& p : before.points) {
     const auto outer = (p.array() == 0 || p.array() == 1).count();
     if (outer >= 2) p = Vec3::Constant(0.5) + 0.99 * (p - Vec3::Constant(0.5));
@@ -218,7 +218,7 @@ TEST(Creases, FitOnlyWhatIsOffThem) {
     (void)w.star(p);
     EXPECT_EQ(fit_to_crease(*w.ws, rules, 1e-4f), Outcome::no_candidate);
   }
-  // Without patches it is not asked for feature edges.
+  // Without patches it is not queried for feature edges.
   Workbench smooth(grid_mesh(3));
   const SurfaceProjection none(smooth.mesh, nullptr);
   BlockRules plain;

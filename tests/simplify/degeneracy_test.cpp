@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The degenerate situations of section 5 of the paper and of the design, each simplified as far as possible
-// and improved aggressively: nothing may be lost or torn.
+// The degenerate situations of section 5 of the paper and further ones, each simplified as far as possible
+// and improved aggressively. No part may be lost or torn.
 #include <gtest/gtest.h>
 
 #include "tests/simplify/meshes.h"
@@ -21,7 +21,7 @@ struct Case {
 void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 
 const Case cases[] = {
-    // A layer one cell, so one tet, thick, between two others and as a skin.
+    // A layer one cell (and one tet) thick, between two others and as a skin.
     {"single_tet_thick_layer", {8, 8, 5}, [](int, int, int z) { return Tag(z < 2    ? 1
                                                                            : z == 2 ? 2
                                                                                     : 3); }},
@@ -81,9 +81,9 @@ const Case cases[] = {
 };
 
 /// Number of findings of each kind.
-std::map<MeshFault, std::size_t> counts(const TetMesh& mesh) {
-  std::map<MeshFault, std::size_t> out;
-  for (const MeshFinding& f : check_mesh(mesh)) out[f.fault] = f.count;
+std::map<DiagnosticCode, std::size_t> counts(const TetMesh& mesh) {
+  std::map<DiagnosticCode, std::size_t> out;
+  for (const MeshFinding& f : check_mesh(mesh)) out[f.code] = f.count;
   return out;
 }
 

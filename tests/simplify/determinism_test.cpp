@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The result depends on the mesh, the options and the seed only, neither on the number of threads nor on
-// their timing. Built a second time with threads that yield at random (test_yields).
+// The result depends only on the mesh, the options and the seed, not on the number of threads or their
+// timing. A second build has threads that yield at random (test_yields).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace tetwright::determinism_test {
 namespace {
 
 #ifdef TETWRIGHT_INJECT_YIELDS
-// Pauses, and the thread sanitizer, take time.
+// Small, since pauses and the thread sanitizer take time.
 constexpr int cells = 5;
 const std::vector<unsigned> thread_counts{2, 8};
 #else
@@ -33,7 +33,7 @@ TetMesh three_materials() {
   return mesh;
 }
 
-/// Empty if both are equal bit by bit, else a description of the difference.
+/// Empty if both are equal bit by bit, otherwise a description of the difference.
 std::string difference(const TetMesh& a, const TetMesh& b) {
   if (a.points.size() != b.points.size() || a.tets.size() != b.tets.size())
     return "sizes: " + std::to_string(a.tets.size()) + " and " + std::to_string(b.tets.size()) + " tets";
@@ -92,10 +92,11 @@ TEST_P(Determinism, AnyNumberOfThreadsGivesTheSameBytes) {
     SimplifyReport report;
     const TetMesh mesh = run(GetParam(), threads, 1, &report);
     EXPECT_EQ(difference(mesh, expected), "") << threads << " threads";
-    // The counts are equal, too.
+    // The counts must be equal as well.
     ASSERT_EQ(report.iterations.size(), alone.iterations.size());
     for (std::size_t i = 0; i < report.iterations.size(); ++i) {
       EXPECT_EQ(report.iterations[i].tets_after, alone.iterations[i].tets_after);
+      EXPECT_EQ(report.iterations[i].tets_by_quality, alone.iterations[i].tets_by_quality);
       EXPECT_EQ(report.iterations[i].counts.counts, alone.iterations[i].counts.counts);
       EXPECT_EQ(report.iterations[i].conflicts, alone.iterations[i].conflicts);
     }
@@ -104,7 +105,8 @@ TEST_P(Determinism, AnyNumberOfThreadsGivesTheSameBytes) {
         std::accumulate(decided.begin(), decided.end(), std::uint64_t{0}),
         std::accumulate(alone.decided_by_worker.begin(), alone.decided_by_worker.end(), std::uint64_t{0}));
 #ifdef TETWRIGHT_INJECT_YIELDS
-    // Otherwise nothing was shown. Without yields one thread may do everything on a busy machine.
+    // At least two threads must have worked for a meaningful test. Without yields, one thread may do all work
+    // on a busy machine.
     EXPECT_GT(std::count_if(decided.begin(), decided.end(), [](std::uint64_t n) { return n > 0; }), 1)
         << threads << " threads";
 #endif

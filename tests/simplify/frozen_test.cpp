@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Frozen parts survive blocks of every operation.
+// Frozen parts are preserved by blocks of every operation.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -33,7 +33,7 @@ std::array<Place, N> places(const EditableMesh& mesh, const std::array<Index, N>
   return out;
 }
 
-/// Must not change: the frozen points, and the tets and the faces between regions with frozen points only.
+/// The parts that must not change: frozen points, and tets and faces between regions with only frozen points.
 struct Kept {
   std::set<Place> points;
   std::set<std::pair<std::array<Place, 4>, MaterialTag>> tets;
@@ -150,7 +150,7 @@ TEST(Frozen, PointsOfTheMaskStayWithTheirTets) {
   Random random(3);
   std::size_t frozen = 0;
   for (std::size_t p = 0; p < mask.size(); ++p) {
-    // A whole corner of the mesh, and scattered points.
+    // Freeze a whole corner of the mesh, and scattered points.
     mask[p] = mesh.points[p].maxCoeff() < 3.5 || random.below(12) == 0;
     frozen += mask[p];
   }
@@ -175,7 +175,7 @@ TEST(Frozen, FacesOfBoundaryAndInterfacesStay) {
     EXPECT_GT(done.at(inner), 0u) << operation_names[static_cast<std::size_t>(inner)];
   EXPECT_EQ(done.at(Operation::fit), 0u);
   EXPECT_EQ(done.at(Operation::insert_in_face), 0u);
-  EXPECT_EQ(kept(w.mesh).faces.size(), faces);  // none was added, either
+  EXPECT_EQ(kept(w.mesh).faces.size(), faces);  // and none was added
   EXPECT_EQ(w.grid.triangles().size(), faces);
 }
 

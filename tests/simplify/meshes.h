@@ -11,9 +11,9 @@
 namespace tetwright {
 
 /// n.x by n.y by n.z unit cubes of six tets each (Kuhn 1960: all around the diagonal, so neighbours agree).
-/// Points without a tet are left out.
+/// Points without a tet are omitted.
 ///
-/// \param material returns the tag of the cube at these coordinates, or nothing for no cube.
+/// \param material returns the tag of the cube at these coordinates; std::nullopt for no cube.
 inline TetMesh grid_mesh(std::array<int, 3> n,
                          const std::function<std::optional<MaterialTag>(int, int, int)>& material) {
   TetMesh mesh;
@@ -55,7 +55,7 @@ inline TetMesh grid_mesh(int n) {
   return grid_mesh({n, n, n}, [](int, int, int) { return std::optional<MaterialTag>(1); });
 }
 
-/// Moves every point a little, too little to invert a tet of grid_mesh.
+/// Moves every point slightly, without inverting a tet of grid_mesh.
 inline void jitter(TetMesh& mesh, std::uint64_t seed, double amount = 0.1) {
   Random random(seed);
   // One statement each: the order in which arguments are evaluated depends on the compiler.

@@ -16,7 +16,8 @@ inline void set_patches(TetMesh& mesh,
     t.patch = patch(t, (mesh.points[t.ids[0]] + mesh.points[t.ids[1]] + mesh.points[t.ids[2]]) / 3);
 }
 
-/// Moves points a little, but none off a side of the cube [0, n]^3, nor off a plane with a coordinate `kept`.
+/// Moves points slightly, but keeps points on the sides of the cube [0, n]^3 and on planes with a coordinate
+/// `kept`.
 inline void jitter_inside(TetMesh& mesh, double n, std::uint64_t seed, double amount, double kept = -1) {
   Random random(seed);
   for (Vec3& p : mesh.points)
@@ -47,8 +48,7 @@ inline TetMesh cube_with_sides(int n, std::uint64_t seed, double amount = 0.3) {
   return mesh;
 }
 
-/// Two materials that meet in the plane x = n / 2, the halves of which, below and above y = n / 2, are
-/// patches 1 and 2.
+/// Two materials that meet in the plane x = n / 2. Its halves below and above y = n / 2 are patches 1 and 2.
 inline TetMesh two_halves(int n, std::uint64_t seed, double amount = 0.3) {
   TetMesh mesh =
       grid_mesh({n, n, n}, [&](int x, int, int) { return std::optional<MaterialTag>(x < n / 2 ? 1 : 2); });

@@ -16,7 +16,8 @@ namespace tetwright::patches_test {
 namespace {
 
 constexpr int n = 8;
-/// Sums and midpoints of points on a plane lie on it up to rounding; see common/tolerances.h for the rest.
+/// Sums and midpoints of points on a plane lie on it within rounding; see common/tolerances.h for other
+/// tolerances.
 constexpr double rounding = 1e-9;
 
 std::map<Index, std::set<std::uint16_t>> patches_at_points(const TetMesh& mesh) {
@@ -81,7 +82,7 @@ TEST_P(Patches, SidesOfACubeKeepTheirEdgesAndCorners) {
   options.schedule = GetParam().schedule;
   const TetMesh after = simplify(mesh, options);
   EXPECT_LT(after.tets.size(), mesh.tets.size() / 5);
-  // The closing lets points at bad tets leave a surface by a third of an ideal edge.
+  // The final improvement lets points at bad tets leave a surface by a third of an ideal edge.
   expect_sides(mesh, after, GetParam().schedule == Schedule::paper ? rounding : 0.6);
 }
 
@@ -122,7 +123,7 @@ TEST_P(Patches, ACreaseInAnInterfaceStays) {
   EXPECT_LT(on_crease, static_cast<std::size_t>(n + 1));
 }
 
-// Points at bad tets may leave a surface a little, but not where patches meet.
+// Points at bad tets may leave a surface slightly, but not where patches meet.
 TEST(Patches, ImprovementKeepsACrease) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     TetMesh mesh = two_halves(n, seed, 0.9);

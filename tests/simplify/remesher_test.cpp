@@ -275,7 +275,7 @@ TEST(Remesher, CarriesLinearFieldsAndKeepsIntegrals) {
   const RemeshRegion all = RemeshRegion::where([](const Vec3&) { return true; });
   const RemeshRegion corner = RemeshRegion::box({2, 2, 2}, {6, 6, 6});
   const auto check = [&] {
-    // Inside the body interpolation is exact; the surface may move outwards a little.
+    // Inside the body interpolation is exact; the surface may move outwards slightly.
     for (Index p = 0; p < r.point_slots(); ++p)
       if (r.has_point(p)) {
         EXPECT_NEAR(r.point_field(0)[p], linear(r.position(p)), 0.5);
@@ -424,7 +424,7 @@ TEST(Remesher, KeepsPatchesWhenAllPositionsAreSetAfterOperations) {
   EXPECT_GT(inner, 200u);
 }
 
-// Two cubes that touch along an edge: its points exist twice and move together.
+// Two cubes that touch along an edge. Its points exist twice and move together.
 TEST(Remesher, MovesPointsThatWereSplit) {
   const TetMesh mesh = grid_mesh({2, 2, 2}, [](int x, int y, int) { return x == y ? Tag(1) : Tag(); });
   Remesher some(mesh), all(mesh);

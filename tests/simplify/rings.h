@@ -11,7 +11,7 @@ namespace tetwright {
 /// `n` tets around the edge of the points 0 (below) and 1 (above); the ring's points 2, 3, ... are at radius
 /// 1.
 ///
-/// \param open through `angle`; otherwise all the way round.
+/// \param open the tets span `angle`; otherwise a full turn.
 /// \param material by index in the ring.
 inline TetMesh ring_mesh(
     int n, double height, bool open = false, double angle = std::numbers::pi,

@@ -53,8 +53,8 @@ TEST(Simplify, ReachesTheCountAndKeepsTheTopology) {
   EXPECT_EQ(report.iterations.back().tets_after, after.tets.size());
 }
 
-// Each operation has a purpose; one that never succeeds in the optimised build is silently broken. Insertions
-// in tets and faces are the last resort, which such meshes do not need: insertion_test.cpp has them.
+// An operation that never succeeds in the optimised build would be silently broken. Insertions in tets and
+// faces are the last resort, which these meshes do not need; insertion_test.cpp tests them.
 TEST(Simplify, EveryOperationSucceedsAtLeastOnce) {
   OperationCounts counts;
   for (Schedule schedule : {Schedule::tuned, Schedule::paper}) {
@@ -124,7 +124,7 @@ TEST(Simplify, SizeAndPlaceDoNotMatter) {
   }
 }
 
-// The output has only coordinates that a double represents, and signs hold for those.
+// Output coordinates are representable as doubles, and signs hold for them.
 TEST(Simplify, FarFromTheOriginTheWrittenMeshIsValid) {
   TetMesh mesh = grid_mesh(10);
   jitter(mesh, 9);
@@ -176,7 +176,7 @@ TEST(Simplify, WithoutAnyTimeTheMeshIsAsItCame) {
     EXPECT_TRUE(report.out_of_time);
     EXPECT_TRUE(report.iterations.empty());
   }
-  // The distance of the result is reported all the same.
+  // The distance of the result is reported nevertheless.
   SimplifyReport report;
   (void)simplify(mesh, options, &report, &progress);
   ASSERT_TRUE(report.deviation);
@@ -197,7 +197,7 @@ TEST(Simplify, ADeadlineAtAnyMomentLeavesAValidMesh) {
   options.target_tets = 1500;
   options.tolerance = 0.1;
 
-  // Deadlines at several moments within the time that the work takes, which varies, and some later ones.
+  // Deadlines at several times within the duration of the work, which varies, and some later ones.
   SimplifyReport whole;
   SimplifyOptions without_tolerance = options;
   without_tolerance.tolerance = 0;
@@ -213,7 +213,7 @@ TEST(Simplify, ADeadlineAtAnyMomentLeavesAValidMesh) {
     for (const MeshFinding& finding : check_mesh(after)) ADD_FAILURE() << mesh_finding_line(finding);
     for (const std::string& d : topology_differences(topology(mesh), topology(after))) ADD_FAILURE() << d;
     ASSERT_TRUE(report.deviation);
-    // The tolerance holds, proven or not.
+    // The tolerance holds, whether proven or not.
     EXPECT_LE(report.deviation->from_mesh.lower, options.tolerance);
     EXPECT_LE(report.deviation->from_surface.lower, options.tolerance);
     EXPECT_TRUE(report.out_of_time);

@@ -58,7 +58,7 @@ struct Workbench {
     return ws->star;
   }
 
-  /// Does what BlockRunner does with an operation's answer, in a batch of one: carries out the proposal.
+  /// Processes an operation's outcome as BlockRunner does, in a batch of one: carries out the proposal.
   Outcome carry_out(Outcome answer) {
     last = {};
     std::swap(last, ws->proposal);
@@ -74,7 +74,7 @@ struct Workbench {
     return answer;
   }
 
-  /// Gives the triangles samples of the `surface` (input units), or without one of the mesh's own.
+  /// Assigns to the triangles samples of `surface` (input units) or, if null, of the mesh's own surface.
   /// \pre The grid is as built.
   void own_samples(double edge, const TriangleMesh* surface = nullptr) {
     input_surface = std::make_unique<InputSurface>(mesh, surface);
@@ -92,7 +92,7 @@ struct Workbench {
     }
     tetwright::begin_batch(mesh, proposals.size(), tets, points);
   }
-  /// Whether the proposal wins; it then has claimed its write set and taken its slots.
+  /// Whether the proposal wins. If so, it has claimed its write set and taken its slots.
   bool admit(Proposal& p) {
     if (!mesh.reservations().free(p.read_set())) return false;
     ledger.commit(p.volumes);

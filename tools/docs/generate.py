@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Makes the generated pages of the guide: options, formats and statistics.
+"""Makes the generated pages of the guide: options, formats, statistics and messages.
 
     generate.py TETWRIGHT [--check]
 
 Options come from the program's --help, their ranges from what it says of a value that none of them takes. What a format
-holds is found out by writing a mesh that has everything. Statistics come from data/stats.schema.json. With --check
-nothing is written, and the status is 1 if a page would change.
+holds is found out by writing a mesh that has everything. Statistics come from data/stats.schema.json, messages from diagnostic_kinds() of the Python module, which must be
+found on the path. With --check nothing is written, and the status is 1 if a page would change.
 """
 import difflib
 import json
@@ -304,7 +304,33 @@ def statistics_page(_):
     return text
 
 
-PAGES = {"options.md": options_page, "formats.md": formats_page, "statistics.md": statistics_page}
+def messages_page(_):
+    """The template with a table for each {{kinds FIRST LAST}}: the codes from FIRST to LAST."""
+    import tetwright  # this page alone needs it
+    kinds = tetwright.diagnostic_kinds()
+    names = list(kinds)
+    listed = []
+
+    def table(found):
+        chosen = names[names.index(found[1]):names.index(found[2]) + 1]
+        listed.extend(chosen)
+        rows = "| code | severity | message | cause | remedy |\n" + "| --- " * 5 + "|\n"
+        for name in chosen:
+            kind = kinds[name]
+            severity = kind.severity + (" (a)" if kind.acceptable else "")
+            rows += "| " + " | ".join([f"`{name}`", severity, *map(cell, (kind.message, kind.cause, kind.remedy))]) + " |\n"
+        return rows.rstrip()
+
+    with open(os.path.join(SOURCE, "tools", "docs", "messages.md.in"), encoding="utf-8") as file:
+        text = re.sub(r"\{\{kinds (\S+) (\S+)\}\}", table, file.read())
+    # Errors have one code for many messages, which the template lists.
+    missing = [name for name in names if name not in listed and f"\n| `{name}` | error, status " not in text]
+    if missing or len(listed) != len(set(listed)):
+        raise SystemExit(f"generate.py: tools/docs/messages.md.in must list each code once; it lacks {missing}")
+    return NOTICE + text
+
+
+PAGES = {"options.md": options_page, "formats.md": formats_page, "statistics.md": statistics_page, "messages.md": messages_page}
 
 
 def main():

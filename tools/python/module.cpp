@@ -304,6 +304,13 @@ PYBIND11_MODULE(_core, module) {
   bind_mesh(module);
 
   module.def("option_types", &option_types);
+  module.def("diagnostic_kinds", [] {
+    py::list kinds;
+    for (const DiagnosticKind& kind : diagnostic_kinds())
+      kinds.append(py::make_tuple(kind.name, name_of(kind.severity), kind.yields != Yields::never,
+                                  kind.certain, kind.title, kind.message, kind.cause, kind.remedy));
+    return kinds;
+  });
   module.def("is_face_label", [](const std::string& name) { return is_face_label(name); });
   module.def("run", &run);
   module.def("check", &check);

@@ -31,6 +31,7 @@ nlohmann::json iteration_json(const IterationReport& it) {
   return {{"kind", it.kind},
           {"tets_before", it.tets_before},
           {"tets_after", it.tets_after},
+          {"tets_by_quality", it.tets_by_quality},
           {"cutoff", it.cutoff},
           {"percent", it.percent},
           {"largest_error", it.max_error},
@@ -422,10 +423,11 @@ std::string check_json(const CommandRun& ended, const CheckReport& check) {
       places.push_back({{"text", place.text}, {"points", place.points}});
       if (place.at) places.back()["at"] = place_json(*place.at);
     }
-    j["findings"].push_back({{"number", static_cast<int>(f.fault)},
-                             {"name", mesh_fault_name(f.fault)},
-                             {"severity", is_warning(f.fault) ? "warning" : "error"},
-                             {"what", mesh_fault_text(f.fault)},
+    const int number = static_cast<int>(f.code) - static_cast<int>(DiagnosticCode::materials_missing) + 1;
+    j["findings"].push_back({{"number", number},
+                             {"name", mesh_finding_name(f)},
+                             {"severity", name_of(kind_of(f.code).severity)},
+                             {"what", kind_of(f.code).message},
                              {"count", f.count},
                              {"places", places}});
   }

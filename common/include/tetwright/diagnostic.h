@@ -20,7 +20,7 @@ enum class Severity : std::uint8_t {
   error       ///< of `check`: the mesh is not valid; of a run: there is no result
 };
 
-/// Each kind of diagnostic. diagnostic_kinds() has their names, data/guide/messages.md causes and remedies.
+/// Each kind of diagnostic; diagnostic_kinds() describes them.
 enum class DiagnosticCode : std::uint8_t {
   // Requests that were not met.
   target_missed,
@@ -84,7 +84,7 @@ enum class DiagnosticCode : std::uint8_t {
   // Files.
   input_dropped,
   input_restored,
-  // Findings of `check`, in the order of MeshFault.
+  // Findings of `check`: first those of check_mesh().
   materials_missing,
   index_out_of_range,
   coordinates_not_finite,
@@ -119,11 +119,15 @@ struct DiagnosticKind {
   DiagnosticCode code;
   const char* name;  ///< "target-missed"; stays the same from version to version
   Severity severity;
-  Yields yields;
-  const char* title;  ///< a few words for lists
-  /// False: the result differs from an estimate, which may be what is wrong. Never counts as a note for
+  Yields yields = Yields::never;
+  /// False: the result differs from an estimate, which may itself be wrong. Never counts as a note for
   /// --strict.
   bool certain = true;
+  const char* title;  ///< a few words for lists
+  const char* message =
+      "";  ///< pattern of the line, with N, D and NAME for values; findings of `check`: the line
+  const char* cause;
+  const char* remedy;  ///< what the user can do
 };
 
 /// All kinds, in the order of DiagnosticCode.

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "tetwright/diagnostic.h"
 #include "tetwright/surface_mesh.h"
 #include "tetwright/tet_mesh.h"
 
@@ -157,44 +158,22 @@ struct MeshFace {
 std::vector<MeshFace> mesh_faces(std::span<const Tet> tets, std::size_t points,
                                  const std::vector<std::uint8_t>* candidates = nullptr);
 
-/// Faults of a mesh, in the order in which they are checked. If one of the first three is found, no further
-/// check is made. Unused points are a warning, since no computation on the tets depends on them; all other
-/// faults are errors. Fans and components count as surplus beyond the first of each point.
-enum class MeshFault : int {
-  materials_missing = 1,              ///< no tets, or the numbers of materials and tets differ
-  index_out_of_range = 2,             ///< tets that refer to a point that does not exist
-  coordinates_not_finite = 3,         ///< points with a coordinate that is not finite
-  degenerate_tets = 4,                ///< tets with a repeated vertex
-  duplicate_tets = 5,                 ///< tets beyond the first with the same vertices
-  unused_points = 6,                  ///< points that no tet uses; a warning
-  inverted = 7,                       ///< tets whose exact orientation is negative or zero
-  face_over_shared = 8,               ///< faces with more than two tets
-  boundary_edges_not_two = 9,         ///< boundary edges without exactly two boundary triangles
-  boundary_points_non_manifold = 10,  ///< surplus fans of boundary triangles at a point
-  point_star_split = 11,              ///< surplus face-connected components of a point's star
-  self_intersections = 12             ///< intersecting pairs of boundary or interface triangles
-};
-
-/// Name in machine-readable reports, such as "degenerate_tets".
-const char* mesh_fault_name(MeshFault fault);
-
-/// Description of the counted items, such as "tets with a repeated vertex".
-const char* mesh_fault_text(MeshFault fault);
-
-/// Whether the fault leaves the mesh valid.
-bool is_warning(MeshFault fault);
-
 struct MeshPlace {
   std::string text;           ///< such as "tet 7 (1 2 2 5)" or "point 3 at 0 0.5 1"
   std::vector<Index> points;  ///< indices of the points concerned, in the order of the text
   std::optional<Vec3> at;     ///< mean of the points' positions, if all points exist and are finite
 };
 
+/// A defect that check_mesh() found. Its code is one from materials_missing to self_intersections, and
+/// kind_of(code).message says what is counted, such as "tets with a repeated vertex".
 struct MeshFinding {
-  MeshFault fault;
+  DiagnosticCode code;
   std::size_t count;
   std::vector<MeshPlace> places;  ///< examples: the first few
 };
+
+/// Name in machine-readable reports, such as "degenerate_tets": that of the code with underscores.
+std::string mesh_finding_name(const MeshFinding& finding);
 
 struct MeshCheckOptions {
   bool self_intersections = true;  ///< takes as long as all other checks together
@@ -206,7 +185,10 @@ bool is_valid(const std::vector<MeshFinding>& findings);
 
 /// Checks any mesh, even one with indices out of range. Parallel; the result does not depend on the number of
 /// threads. Takes well under a second and about 120 MB of memory for a million tets.
-/// \return the faults found; indices in their texts count from 0
+/// Stops at unsound arrays: after materials_missing, index_out_of_range or coordinates_not_finite no further
+/// check is made. Unused points are a warning, since no computation on the tets depends on them; all other
+/// defects are errors.
+/// \return the defects found, in the order of their codes; indices in their texts count from 0
 std::vector<MeshFinding> check_mesh(const TetMesh& mesh, const MeshCheckOptions& options = {});
 /// Checks a mesh, given its faces as returned by mesh_faces().
 /// \pre indices in range
@@ -215,6 +197,9 @@ std::vector<MeshFinding> check_mesh(const TetMesh& mesh, const MeshCheckOptions&
 
 /// One line for messages: "tets with a repeated vertex (degenerate_tets): 3, the first at tet 7 (1 2 2 5)".
 std::string mesh_finding_line(const MeshFinding& finding);
+
+/// The finding as a diagnostic, with mesh_finding_line() for its text.
+Diagnostic diagnostic_of(const MeshFinding& finding);
 
 /// Numbers of tets by volume and smallest solid angle, as in Figure 2 of Cutler, Dorsey & McMillan 2004.
 struct QualityHistogram {

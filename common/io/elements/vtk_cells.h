@@ -8,32 +8,17 @@
 #include <utility>
 #include <vector>
 
+#include "common/io/elements/element_types.h"
 #include "tetwright/io.h"
 
 namespace tetwright {
 
-/// VTK's numbers of linear tets and triangles, in legacy and in XML files.
-inline constexpr std::int64_t vtk_tet_type = 10;
-inline constexpr std::int64_t vtk_triangle_type = 5;
-/// Tets of ten nodes and triangles of six.
-inline constexpr std::int64_t vtk_quadratic_tet_type = 24;
-inline constexpr std::int64_t vtk_quadratic_triangle_type = 22;
-
 inline constexpr bool is_vtk_tet(std::int64_t type) {
-  return type == vtk_tet_type || type == vtk_quadratic_tet_type;
+  return type == element::tet.vtk || type == element::quadratic_tet.vtk;
 }
 
 inline constexpr bool is_vtk_triangle(std::int64_t type) {
-  return type == vtk_triangle_type || type == vtk_quadratic_triangle_type;
-}
-
-/// Number of nodes of a linear or quadratic tet or triangle; 0 for other cells.
-inline constexpr std::size_t vtk_nodes_of(std::int64_t type) {
-  return type == vtk_tet_type                  ? 4
-         : type == vtk_quadratic_tet_type      ? 10
-         : type == vtk_triangle_type           ? 3
-         : type == vtk_quadratic_triangle_type ? 6
-                                               : 0;
+  return type == element::triangle.vtk || type == element::quadratic_triangle.vtk;
 }
 
 /// Names of arrays in this program's files: the cell field with the numbers of surfaces, and the field data
@@ -51,10 +36,10 @@ std::vector<std::pair<std::int64_t, std::string>> parse_vtk_names(const std::str
                                                                   const std::string& array,
                                                                   const std::string& file);
 
-/// Cells of a file that are not linear tets, by kind.
+/// Cells of a file that are not linear tets, counted by type.
 class OtherVtkCells {
  public:
-  /// `type` is VTK's number of the kind, `cell` the index of the cell.
+  /// `type` is VTK's number, `cell` the index of the cell.
   void add(std::int64_t type, std::size_t cell);
   /// Removes a cell that is no volume.
   void remove(std::int64_t type) {
@@ -66,7 +51,7 @@ class OtherVtkCells {
   std::size_t first_volume() const { return first_volume_; }
   /// Message that rejects the file for them.
   std::string refusal() const;
-  /// Appends the skipped kinds: lines, faces, vertices.
+  /// Appends the skipped cells: lines, faces, vertices.
   void append_flat_to(std::vector<Dropped>& dropped) const;
 
  private:

@@ -74,7 +74,7 @@ std::string write_msh(const MeshToWrite& written) {
   std::sort(tags.begin(), tags.end());
   tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    begin_element(out, t + 1, midside ? msh_quadratic_tet_type : msh_tet_type, mesh.materials[t],
+    begin_element(out, t + 1, midside ? element::quadratic_tet.msh : element::tet.msh, mesh.materials[t],
                   std::lower_bound(tags.begin(), tags.end(), mesh.materials[t]) - tags.begin() + 1);
     append_nodes(out, mesh.tets[t]);
     if (midside)
@@ -84,8 +84,8 @@ std::string write_msh(const MeshToWrite& written) {
   }
   for (std::size_t i = 0; i < mesh.interfaces.size(); ++i) {
     const auto group = groups.faces.number_of(mesh.interfaces[i]);
-    begin_element(out, mesh.tets.size() + i + 1, midside ? msh_quadratic_triangle_type : msh_triangle_type,
-                  group, group);
+    begin_element(out, mesh.tets.size() + i + 1,
+                  midside ? element::quadratic_triangle.msh : element::triangle.msh, group, group);
     append_nodes(out, mesh.interfaces[i].ids);
     if (midside) append_nodes(out, midside->of_faces[i], mesh.points.size());
     out += '\n';

@@ -234,9 +234,9 @@ class Msh4Writer {
     for (const Entity& entity : entities_) {
       const bool surface = entity.dimension == surface_dimension;
       begin_block(entity,
-                  surface            ? written_.midside ? msh_quadratic_triangle_type : msh_triangle_type
-                  : written_.midside ? msh_quadratic_tet_type
-                                     : msh_tet_type,
+                  surface ? written_.midside ? element::quadratic_triangle.msh : element::triangle.msh
+                  : written_.midside ? element::quadratic_tet.msh
+                                     : element::tet.msh,
                   entity.elements.size());
       for (const std::size_t e : entity.elements) {
         numbers_.size((surface ? mesh_.tets.size() : 0) + e + 1);

@@ -10,16 +10,10 @@
 #include <utility>
 #include <vector>
 
+#include "common/io/elements/element_types.h"
 #include "tetwright/io.h"
 
 namespace tetwright {
-
-/// Gmsh's numbers of element types.
-inline constexpr std::int64_t msh_triangle_type = 2;
-inline constexpr std::int64_t msh_quad_type = 3;
-inline constexpr std::int64_t msh_tet_type = 4;
-inline constexpr std::int64_t msh_quadratic_triangle_type = 9;
-inline constexpr std::int64_t msh_quadratic_tet_type = 11;
 
 /// Gmsh's order of the midside nodes of a tet: positions in tet_midside_edges.
 inline constexpr std::array<std::size_t, 6> msh_midside_order{0, 1, 2, 3, 5, 4};
@@ -29,10 +23,7 @@ inline constexpr std::array<std::size_t, 6> msh_midside_order{0, 1, 2, 3, 5, 4};
 /// 0.
 inline constexpr const char* msh_material_comment = "tetwright material: ";
 
-/// Number of nodes of an element of this type; 0: unknown.
-std::size_t msh_nodes_of(std::int64_t type);
-
-/// Elements of an MSH file that are not linear tets, counted by kind and group, and the names of the groups
+/// Elements of an MSH file that are not linear tets, counted by type and group, and the names of the groups
 /// of every dimension.
 class OtherMshElements {
  public:
@@ -66,7 +57,7 @@ class OtherMshElements {
                        std::vector<Dropped>* dropped) const;
 
  private:
-  struct OfKind {
+  struct OfType {
     std::size_t elements = 0;
     std::set<std::int64_t> groups;  ///< without 0
   };
@@ -79,7 +70,7 @@ class OtherMshElements {
   std::array<std::map<std::int64_t, std::string>, 4> names_;  ///< by dimension, except faces
   FileTriangles triangles_;                                   ///< with the names of groups of faces
   std::array<std::set<std::int64_t>, 4> further_groups_;      ///< by dimension
-  std::map<std::int64_t, OfKind> flat_;                       ///< by type
+  std::map<std::int64_t, OfType> flat_;                       ///< by type
   std::map<std::int64_t, std::size_t> volumes_;               ///< numbers by type
   std::int64_t first_volume_ = 0, first_volume_type_ = 0;
   std::size_t first_volume_line_ = 0;

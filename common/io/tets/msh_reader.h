@@ -98,7 +98,9 @@ class MshReader {
   bool read_face(std::int64_t type, std::int64_t element, std::int64_t group);
   /// Reads a tet of four nodes, or of ten nodes with the corners first.
   void read_tet(std::int64_t type, std::int64_t element);
-  static bool is_tet(std::int64_t type) { return type == msh_tet_type || type == msh_quadratic_tet_type; }
+  static bool is_tet(std::int64_t type) {
+    return type == element::tet.msh || type == element::quadratic_tet.msh;
+  }
 
   /// Skips the nodes of an element: in a text file the rest of its line.
   void skip_nodes(std::int64_t type);

@@ -152,11 +152,11 @@ void MshReader::begin_elements() {
 }
 
 bool MshReader::read_face(std::int64_t type, std::int64_t element, std::int64_t group) {
-  if (type == msh_triangle_type || type == msh_quadratic_triangle_type) {
+  if (type == element::triangle.msh || type == element::quadratic_triangle.msh) {
     others_.add_triangle(read_ids<Triangle>(element, surface_, "node of a triangle"), without_sign(group));
-    if (type == msh_quadratic_triangle_type)
+    if (type == element::quadratic_triangle.msh)
       midside_.add_triangle(read_ids<Triangle>(element, surface_, "node of a triangle"));
-  } else if (type == msh_quad_type && surface_) {
+  } else if (type == element::quad.msh && surface_) {
     others_.add_quad(read_ids<std::array<Index, 4>>(element, true, "node of a quad"), without_sign(group));
   } else {
     return false;
@@ -167,7 +167,7 @@ bool MshReader::read_face(std::int64_t type, std::int64_t element, std::int64_t 
 void MshReader::read_tet(std::int64_t type, std::int64_t element) {
   const Tet tet = read_ids<Tet>(element, true, "node of a tet");
   result_.mesh.tets.push_back(tet);
-  if (type == msh_quadratic_tet_type)
+  if (type == element::quadratic_tet.msh)
     midside_.add_tet(read_ids<std::array<Index, 6>>(element, true, "node of a tet"));
   if (keep_numbers_) tet_numbers_.push_back(element);
 }
@@ -177,7 +177,8 @@ void MshReader::skip_nodes(std::int64_t type) {
     in_.skip_line();
     return;
   }
-  const std::size_t n = msh_nodes_of(type);
+  const ElementType* known = msh_element_type(type);
+  const std::size_t n = known ? known->nodes : 0;
   if (n == 0) in_.fail("elements of the unknown type " + std::to_string(type) + "; export the file as ASCII");
   for (std::size_t k = 0; k < n; ++k) (void)read_node("node of an element");
 }

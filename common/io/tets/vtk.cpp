@@ -95,7 +95,7 @@ class VtkReader final : private VtkSections {
   /// Nodes of a tet or triangle.
   std::vector<Index> nodes_of(std::size_t c) const {
     const std::size_t begin = cells_.begin(c), size = cells_.size(c);
-    if (size != vtk_nodes_of(types_[c]))
+    if (size != vtk_element_type(types_[c])->nodes)
       fail_at(cells_begin_, begin,
               "cell " + std::to_string(c) + " (counted from 0) is a " +
                   (is_vtk_tet(types_[c]) ? "tet" : "triangle") + " of " + std::to_string(size) +

@@ -25,7 +25,7 @@ namespace tetwright {
 namespace {
 
 // VTK's numbers of the flat cells that become triangles.
-constexpr std::int64_t strip_type = 6, polygon_type = 7, pixel_type = 8, quad_type = 9;
+constexpr std::int64_t strip_type = 6, polygon_type = 7, pixel_type = 8;
 
 /// Reads POLYDATA, or the faces of an UNSTRUCTURED_GRID without volume cells.
 class VtkSurfaceReader final : private VtkSections {
@@ -166,11 +166,11 @@ class VtkSurfaceReader final : private VtkSections {
     } else if (type == pixel_type) {
       expect_corners(4, place());
       surface_.add_polygon(std::array{corners_[0], corners_[1], corners_[3], corners_[2]}, place);
-    } else if (type == vtk_quadratic_triangle_type) {
+    } else if (type == element::quadratic_triangle.vtk) {
       expect_corners(6, place());
       surface_.add_polygon(std::span(corners_).first(3), place);
-    } else if (type == vtk_triangle_type || type == quad_type) {
-      expect_corners(type == quad_type ? 4 : 3, place());
+    } else if (type == element::triangle.vtk || type == element::quad.vtk) {
+      expect_corners(type == element::quad.vtk ? 4 : 3, place());
       surface_.add_polygon(corners_, place);
     } else if (type == polygon_type) {
       surface_.add_polygon(corners_, place);

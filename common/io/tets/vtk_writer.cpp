@@ -107,9 +107,10 @@ void write_vtk(const MeshToWrite& written, const ByteSink& sink) {
     out << '\n';
   }
   out << "CELL_TYPES " << tets + triangles << '\n';
-  for (std::size_t t = 0; t < tets; ++t) out << (midside ? vtk_quadratic_tet_type : vtk_tet_type) << '\n';
+  for (std::size_t t = 0; t < tets; ++t)
+    out << (midside ? element::quadratic_tet.vtk : element::tet.vtk) << '\n';
   for (std::size_t i = 0; i < triangles; ++i)
-    out << (midside ? vtk_quadratic_triangle_type : vtk_triangle_type) << '\n';
+    out << (midside ? element::quadratic_triangle.vtk : element::triangle.vtk) << '\n';
   // Simple readers expect the points first.
   out << "FIELD FieldData " << (parts.surfaces.empty() ? 1 : 2) << '\n';
   write_names(out, vtk_material_names, parts.materials, [](const auto& m) { return m.tag; });

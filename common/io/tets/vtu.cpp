@@ -137,7 +137,7 @@ class VtuReader {
       if (c < ghost.size() && (ghost[c] & duplicate_cell)) {
         ++ghost_cells_;
       } else if (is_vtk_tet(types[c])) {
-        const std::size_t nodes = vtk_nodes_of(types[c]);
+        const std::size_t nodes = vtk_element_type(types[c])->nodes;
         if (end - begin != nodes)
           data_.fail(offsets_node, "cell " + std::to_string(c) + " is a tet of " +
                                        std::to_string(end - begin) + " points; the file is damaged");
@@ -334,7 +334,7 @@ void write_vtu(const MeshToWrite& written, const ByteSink& sink) {
   write_vtu_numbers(sink, "Int64", "offsets", "", mesh.tets.size(),
                     [&](std::size_t i) { return static_cast<std::int64_t>(of_tet * (i + 1)); });
   write_vtu_numbers(sink, "UInt8", "types", "", mesh.tets.size(), [&](std::size_t) {
-    return static_cast<std::uint8_t>(midside ? vtk_quadratic_tet_type : vtk_tet_type);
+    return static_cast<std::uint8_t>(midside ? element::quadratic_tet.vtk : element::tet.vtk);
   });
   sink("</Cells>\n");
   if (!mesh.point_fields.empty()) {

@@ -30,25 +30,28 @@ struct MesherOptions {
   /// Maximum error of a coarser cell at an interface, finest cells; 0: no coarser cells at interfaces.
   double adaptivity = 0.05;
   /// How many times cells are halved where walls and gaps of a surface are thin, 0 to 8. Default: 3, and up
-  /// to 8 where that adds fewer tets than the mesh has anyway.
+  /// to 8 if that at most doubles the number of tets.
   std::optional<int> max_refinement;
   /// Gaps of a surface narrower than this are closed, walls thinner than this omitted; input units.
   double min_gap = 0, min_thickness = 0;
-  /// Additional points around which cells are halved, input units: up to max_refinement times, as long as
-  /// that at most doubles the mesh.
+  /// Additional points around which cells are halved, input units: up to max_refinement times, limited so
+  /// that the number of tets at most doubles.
   std::vector<RefinementRegion> refinement_regions;
-  /// The largest cell wanted at a point, input units. Cells inside, and with keep_outside all cells, are
-  /// split until they are no larger; at surfaces down to a finest cell. Empty: no limit. Not with `uniform`.
+  /// The max cell size at a point, input units. Cells inside (with keep_outside, all cells) are split until
+  /// they are no larger; at surfaces no further than to a finest cell. Empty: no limit. Not allowed with
+  /// `uniform`.
   std::function<double(const Vec3&)> max_cell;
   /// Determines which edges of the surfaces stay sharp.
   FeatureAngle feature_angle;
-  /// Mesh the outside too, in a box (for labels that of the volume), as the material `outside` of tag 0.
+  /// Also mesh the outside as the material `outside` with tag 0, up to a box; for labels, up to the border of
+  /// the volume.
   bool keep_outside = false;
-  /// Memory that the caller needs afterwards per dense tet, bytes. Meshing is refused if that does not fit.
+  /// Memory that the caller needs afterwards per dense tet, bytes. Meshing is refused if it would not be
+  /// available.
   double later_bytes_per_tet = 0;
 };
 
-/// A material, or the outside, that is somewhere too thin for the cells.
+/// A material, or the outside, that is too thin for the cells somewhere.
 struct ThinPartReport {
   std::string name;  ///< empty for the outside: a gap
   std::size_t places = 0;
@@ -66,7 +69,7 @@ struct ThickenedWallsReport {
   Vec3 place = Vec3::Zero();  ///< input units
 };
 
-/// A connected gap of a surface that was closed, or wall that was omitted.
+/// A connected gap of a surface that was closed, or a connected wall that was omitted.
 struct ClosedGapReport {
   std::string name;           ///< of the material
   bool gap = true;            ///< false: an omitted wall
@@ -76,7 +79,7 @@ struct ClosedGapReport {
   Vec3 place = Vec3::Zero();  ///< where it is narrowest, input units
 };
 
-/// The solid expected of a material: certain if the surfaces have no flaw, else an estimate.
+/// The expected solid of a material: certain if the surfaces have no flaw, otherwise an estimate.
 struct ExpectedSolid {
   std::string name;
   MaterialTag tag = 0;
@@ -84,7 +87,7 @@ struct ExpectedSolid {
   SolidShape shape;  ///< input units; derived from the surfaces as given, with a flaw from the distances
   /// A second estimate, derived from the surfaces if they are closed, manifold and do not meet each other.
   std::optional<SolidShape> by_flawed_surface;
-  /// Shells smaller than this (input units cubed) are not significant; with a flaw, those of less than a
+  /// Shells smaller than this (input units cubed) are not significant; with a flaw, this is the volume of a
   /// cell.
   double min_volume = 0;
   /// Additional tolerance of the volume, input units cubed: distances chamfer creases that the mesh has.
@@ -108,18 +111,18 @@ struct MesherReport {
   int resolution = 0;     ///< finest cells along the longest side
   int refinement = 0;     ///< how many times cells were halved beyond `resolution` where sheets are thin
   std::size_t cells = 0;  ///< leaves of the octree
-  std::size_t lattice_tets = 0;       ///< before cutting, without those far outside
+  std::size_t lattice_tets = 0;       ///< before cutting, without tets far outside
   std::size_t isolated_vertices = 0;  ///< components and cavities of one lattice point, omitted
   std::vector<ThinPartReport> thin_parts;
   ThickenedWallsReport thickened;
   std::vector<ClosedGapReport> closed_gaps;
   /// Approximate number of well-shaped tets that fill thin walls with parallel sides; 0 without any.
   std::size_t filling_tets = 0;
-  /// The expected solids of materials given by surfaces, in their order; without layers and the body they are
+  /// The expected solids of materials given by surfaces, in their order. Omits layers and the body they are
   /// cut from.
   std::vector<ExpectedSolid> expected;
-  /// Materials whose expected solid cannot be determined: surfaces do not determine it, and cells were
-  /// refined or all of it is smaller than a cell.
+  /// Materials whose expected solid cannot be determined: the surfaces have a flaw, and cells were refined or
+  /// all of the solid is smaller than a cell.
   std::vector<std::string> unknown;
   std::vector<FeatureReport> features;  ///< of each surface, in their order
   CreaseCurves creases;                 ///< creases of all surfaces
@@ -135,23 +138,23 @@ class OutputFiles;
 struct DenseMesh {
   TetMesh mesh;  ///< input units, with interface triangles; README.md lists its invariants
   std::shared_ptr<const MaterialField> field;  ///< the signed distances it was cut from
-  /// The reference for simplify(): the field, or, where surfaces have creases or labels are cut off by their
-  /// volume's border, a surface that knows these and the field.
+  /// The reference for simplify(): the field. If surfaces have creases, or if labels are cut off by the
+  /// border of the volume, a surface with these features and the field.
   std::shared_ptr<const ReferenceSurface> reference;
   /// The repaired surfaces of all bodies as meshed; null for label volumes.
   std::shared_ptr<const TriangleMesh> surface;
   MesherReport report;
 };
 
-/// Writes a .vdb file with a level set for each material (not for the outside), of the same name: the signed
-/// distance from the material's interfaces, which is half the difference between its own distance and the
-/// smallest other one.
+/// Writes a .vdb file with a level set for each material except the outside, named after it. Its values are
+/// the signed distances from the material's interfaces: half the difference between the material's own
+/// distance and the smallest other one.
 /// \param files if given, the file appears when these are committed (see files.h)
 /// \throws OutputError
 void write_fields(const MaterialField& field, const std::string& path, OutputFiles* files = nullptr);
 
-/// Estimates the result of mesh_surfaces() from samples of the surfaces, in some tenths of a second: mostly
-/// within 25 %, see mesher/README.md.
+/// Estimates the result of mesh_surfaces() from samples of the surfaces, in a few tenths of a second and
+/// mostly within 25 %; see mesher/README.md.
 /// \throws UsageError and InputError as mesh_surfaces() does
 MesherEstimate estimate_mesh(const MesherInput& input, const MesherOptions& options);
 
@@ -170,11 +173,11 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
 /// mesh_surfaces() with cells that bring surface and mesh within half of `tolerance` of each other, measured
 /// at vertices and centroids.
 ///
-/// Starts with cells of twice the tolerance, or those of `options` if they are smaller. (Where surfaces have
-/// creases, and may have flat faces, cells six times as large are tried first.) Cells where the distance is
-/// too large are halved up to max_refinement times; if that leaves more than 80 % of the tolerance, all cells
-/// become smaller. If the cells of `options` were the smaller ones, 80 % suffices from the start. The caller
-/// must measure the distance reached.
+/// Starts with cells of twice the tolerance, or those of `options` if they are smaller. (Surfaces with
+/// creases may have flat faces, so cells six times as large are tried first.) Cells where the distance is too
+/// large are halved up to max_refinement times; if that leaves more than 80 % of the tolerance, all cells
+/// become smaller. If the initial cells are those of `options`, 80 % suffices from the start. The caller must
+/// measure the distance reached.
 /// \param tolerance input units, above 0
 /// \throws UsageError if cells would be too small, and as mesh_surfaces() does
 DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double tolerance, Progress* progress);
@@ -182,7 +185,7 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
 /// Meshes a segmented volume: a dense tet mesh with the invariants of mesh_surfaces() and a material for each
 /// label. Where a label is thinner than two cells, cells are halved up to three times (not with `uniform`);
 /// the report lists labels that are still too thin. `options.voxel_size` should not exceed the smallest
-/// spacing unless a coarser mesh is wanted.
+/// spacing unless a coarser mesh is intended.
 ///
 /// \param progress may be null
 /// \throws InputError if nothing is left of a label, and otherwise as mesh_surfaces() does
@@ -193,26 +196,27 @@ DenseMesh mesh_labels(const LabelInput& labels, const MesherOptions& options, Pr
 /// \throws UsageError and InputError for options, as mesh_labels() does
 MesherEstimate estimate_mesh(const LabelInput& labels, const MesherOptions& options);
 
-/// The smallest spacing, or the smallest possible cell size of a volume this long, input units.
+/// The smallest spacing, but at least the smallest possible cell size for a volume of this length; input
+/// units.
 double default_cell_size(const LabelInput& labels);
 
-/// The cell size, input units, that gives about five dense tets for each of `target_tets`, at least a quarter
-/// of a voxel. Cells of four or two voxels are chosen if they still give 20 dense tets each and save half of
-/// the tets.
+/// The cell size, input units, that gives about five dense tets per target tet; at least a quarter of a
+/// voxel. Cells of four or two voxels are chosen if they still give 20 dense tets per target tet and save
+/// half of the dense tets.
 /// \param options its cell size is ignored
 /// \throws UsageError for a target of 0
 double cell_size_for_target(const LabelInput& labels, std::size_t target_tets, const MesherOptions& options);
 
-/// The resolution that gives about 40 dense tets for each of `target_tets`, as many as a simplifier needs to
-/// have a choice, or 100 where surfaces have creases at this angle. At least 32, and at most some 20 million
-/// dense tets.
+/// The resolution that gives about 40 dense tets per target tet, enough for the simplifier to have a choice,
+/// or 100 if surfaces have creases at this angle. It is at least 32, and gives at most about 20 million dense
+/// tets.
 /// \throws UsageError for a target of 0
 /// \throws InputError as find_patches() does
 int resolution_for_target(const MesherInput& input, std::size_t target_tets, const FeatureAngle& angle);
 
 /// Sets the resolution, max_cell and refinement regions of `options` so that dense cells are small enough for
-/// the wanted edge lengths: those of `target_length`, or at most `max_edge`. With `max_edge` alone the
-/// resolution of `options` is a lower bound; `target_length` replaces it.
+/// the edge lengths required: `target_length`, and at most `max_edge`. With `max_edge` only, the resolution
+/// of `options` is a lower bound; `target_length` replaces it.
 /// \param target_length may be null
 /// \param max_edge input units, may be infinite
 void choose_cells_for_sizes(const MesherInput& input, const SizeField* target_length, double max_edge,

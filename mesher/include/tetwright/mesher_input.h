@@ -26,7 +26,7 @@ inline constexpr RegionIndex outside_region = 0;
 /// Tag and name of the outside as a material of a mesh that keeps it.
 inline constexpr MaterialTag outside_tag = 0;
 inline constexpr const char* outside_name = "outside";
-/// Marks a point on an interface, in place of its region.
+/// Marks a point on an interface, instead of its region.
 inline constexpr RegionIndex on_interface = 0xffff;
 
 /// How many times cells are halved where walls and gaps of a surface are thin: by default, and at most.
@@ -61,12 +61,12 @@ class RegionSet {
   int size_ = 0;
 };
 
-/// Treatment of components that lie inside other components without intersecting them.
+/// Treatment of components that lie inside others without intersecting them.
 enum class NestedRule {
   automatic,  ///< oriented against the encloser: a cavity, or a body in a cavity; oriented alike: no effect
   cavity,     ///< solids and cavities alternate from the outside to the inside
   solid,      ///< no cavities
-  material    ///< closed ones become surfaces of their own
+  material    ///< closed ones become separate materials
 };
 
 /// A surface from which signed distances can be computed: inside is where the generalised winding number is
@@ -83,14 +83,14 @@ struct RepairedSurface {
   bool intersects_itself = false;  ///< some triangles meet elsewhere than in shared points and edges
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< bounding box
   double area = 0;                               ///< input units squared
-  /// Input units cubed, without cavities; for open components the volume of their cone from the centre of the
-  /// box.
+  /// Input units cubed, without cavities. Open components contribute the volume of their cone from the centre
+  /// of the box.
   double volume = 0;
 };
 
 struct SurfaceRepair {
   RepairedSurface surface;
-  /// With NestedRule::material the enclosed components, oriented outwards; enclosers come first, so that
+  /// With NestedRule::material, the enclosed components, oriented outwards. Enclosers come first, so that
   /// later surfaces carve earlier ones.
   std::vector<RepairedSurface> nested;
   std::vector<Diagnostic> findings;  ///< without the file
@@ -103,9 +103,10 @@ struct SurfaceRepair {
 ///   triangles (of either orientation) are removed;
 /// - triangles are oriented consistently and split into components, inner walls are removed
 ///   (surface_components.h);
-/// - components that nothing encloses are turned outwards together with those they enclose; enclosed ones are
-///   oriented according to `nested` (surface_nesting.h). Only a component that does not intersect the other
-///   one counts as enclosed. An open component whose outside is unclear is not turned.
+/// - components that are not enclosed are oriented outwards, and the components that they enclose are
+///   reversed with them; enclosed ones are then oriented according to `nested` (surface_nesting.h). Only a
+///   component that does not intersect the other one counts as enclosed. An open component whose outside is
+///   unclear is not reversed.
 ///
 /// Holes and self-intersections are kept, since the winding number handles them. A cavity that two
 /// overlapping components both enclose is filled, because the winding number there is 1 + 1 - 1.
@@ -149,24 +150,24 @@ struct MesherInput {
   std::vector<Body> bodies;           ///< later bodies carve earlier ones
   std::vector<MaterialLayer> layers;  ///< of the first body, outermost first
   std::vector<Diagnostic> findings;
-  std::vector<Group> groups;  ///< groups with triangles, ascending; repair may leave nothing of them
+  std::vector<Group> groups;  ///< groups with triangles, ascending; repair may remove all of one
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< bounding box of all bodies, input units
 };
 
-/// Why surfaces do not define the solid of a material for certain: a flaw of its own surface or of one that
-/// carves it.
+/// The reason why surfaces do not define the solid of a material with certainty: a flaw of its own surface or
+/// of one that carves it.
 enum class SurfaceFlaw : std::uint8_t {
   none,
   open,
-  touching,      ///< edges have not just two triangles, or points more than one fan of them
+  touching,      ///< an edge has other than two triangles, or a point has more than one fan of them
   intersecting,  ///< itself
   meeting        ///< the surface of another material
 };
 
 /// Validates and repairs the surfaces, see repair_surface(). With NestedRule::material every enclosed
-/// component becomes a body directly after its encloser, with the smallest free tag from 1 up. Where more
-/// than one surface has groups of triangles, names that several have are qualified, see qualify_names(), and
-/// groups that have only a number are named after their surface.
+/// component becomes a body directly after its encloser, with the smallest free tag from 1 up. If more than
+/// one surface has groups of triangles, names that occur in several surfaces are qualified (see
+/// qualify_names()), and groups that have only a number are named after their surface.
 ///
 /// \pre non-empty names differ, and so do tags
 /// \throws InputError as repair_surface() does; for coordinates too large or a size too small for areas and
@@ -184,7 +185,7 @@ double largest_coordinate(const MesherInput& input);
 
 /// Selects the labels of a segmented volume that are meshed, and names them.
 struct LabelChoice {
-  /// Labels that become materials, as inclusive ranges; all others are outside. Empty: all but the outside
+  /// Labels that become materials, as inclusive ranges; all others are outside. Empty: all except the outside
   /// label.
   std::vector<std::pair<MaterialTag, MaterialTag>> labels;
   std::map<MaterialTag, std::string> names;  ///< labels without a name are called label_N
@@ -192,12 +193,13 @@ struct LabelChoice {
   std::string names_file;
   std::map<MaterialTag, std::size_t> name_lines;
   MaterialTag outside_label = 0;
-  /// Face-connected islands of fewer voxels are merged into the region they touch most; 0 or 1: none.
+  /// Face-connected islands of fewer voxels are merged into the region with which they share most voxel
+  /// faces; 0 or 1: none.
   std::size_t min_voxels = 8;
 };
 
-/// Range of the number of parts that a region of voxels may have: at least those that touch at a corner or
-/// more, at most those connected by faces. Unlimited if not counted.
+/// Range of the number of parts that a region of voxels may have: from the number of parts connected by
+/// faces, edges or corners to the number of parts connected by faces. Unlimited if not counted.
 struct LabelParts {
   std::size_t touching = 0, by_faces = std::numeric_limits<std::size_t>::max();
   std::optional<Vec3> smallest_place;  ///< centre of a voxel of the smallest part by faces, input units
@@ -212,7 +214,7 @@ struct LabelMaterial {
   LabelParts parts = {};           ///< after merging
 };
 
-/// A chosen label that is not meshed because all of it was in small islands.
+/// A chosen label that is not meshed because all its voxels were in small islands.
 struct LostLabel {
   MaterialTag tag = 0;
   std::string name;
@@ -246,25 +248,25 @@ struct LabelInput {
 /// result does not depend on the number of threads.
 ///
 /// \param progress may be null
-/// \throws UsageError for impossible ranges and names: the outside label is chosen, two labels share a name,
-///   a label is called "outside"
-/// \throws InputError for impossible names that come from a file, a chosen label that does not exist (with a
+/// \throws UsageError for invalid ranges and names: the outside label is chosen, two labels share a name, a
+///   label is called "outside"
+/// \throws InputError for invalid names that come from a file, a chosen label that does not exist (with a
 ///   list of those that do), or more than 60,000 labels
 /// \throws NothingToMeshError if all voxels are outside
 /// \throws Interrupted
 LabelInput make_label_input(LabelVolume volume, const std::string& file, const LabelChoice& choice,
                             Progress* progress);
 
-/// Splits a surface into one for each group of triangles, in the order of their first triangles and without
-/// groups of their own. A surface without groups is returned as it is, called `name`. A group without a name
-/// is called after `name` and its number; triangles in no group form a surface called `name`.
+/// Splits a surface into one surface per group of triangles, in the order of their first triangles. The
+/// results have no groups. A surface without groups is returned unchanged, called `name`. A group without a
+/// name is named after `name` and its number; triangles in no group form a surface called `name`.
 std::vector<NamedSurface> split_solids(TriangleMesh surface, const std::string& name);
 
 // OpenVDB files (.vdb), the exchange format of level sets; they may also hold segmented volumes.
 
 /// Reads the level sets of a file as surfaces, in the file's order: their zero levels in the file's world
-/// coordinates, oriented with the negative side inside, and closed unless the level set itself ends. Memory
-/// grows with the file.
+/// coordinates, oriented with the negative side inside. They are closed except where the level set itself
+/// ends. Memory grows with the file.
 ///
 /// A level set is a grid of floats of the class "level set", or without a class but with a positive
 /// background and values of both signs. Other grids are ignored.
@@ -275,8 +277,8 @@ std::vector<NamedSurface> read_level_sets(const std::string& file);
 
 /// Reads the labels of a file that has no level set but one grid of int32 or int64. The volume is the
 /// bounding box of the active voxels; inactive voxels in it have the values that OpenVDB gives them, usually
-/// the background. Index coordinates are those of voxel centres. Memory grows with the file and by 4 bytes
-/// per voxel.
+/// the background. Index coordinates refer to voxel centres. Memory grows with the file and by 4 bytes per
+/// voxel.
 ///
 /// \param max_voxels 2^31 or fewer
 /// \return nothing for a file with a level set or without such a grid

@@ -19,20 +19,20 @@
 
 namespace tetwright {
 
-/// Result of an attempted operation. Only `done` changes something; the statistics count all.
+/// Result of an attempted operation. Only `done` changes the mesh; the statistics count all results.
 enum class Outcome : std::uint8_t {
   done,
-  conflict,           ///< an earlier winner of the batch has claimed part of its read set: retried
+  conflict,           ///< an earlier winner of the batch claimed part of its read set; retried
   stale,              ///< the element changed since it was listed
   no_candidate,       ///< the element does not admit this operation
   material_rule,      ///< the dimensions of point and edge forbid it (interfaces, junction curves, spanning
                       ///< edges)
   surface_error,      ///< Weight or Error above E
   inverts,            ///< a tet would become flat or negative
-  quality,            ///< the worst tet would get worse, and annealing did not allow it
+  quality,            ///< the worst tet would get worse and annealing did not accept it
   link_condition,     ///< the topology would change
   self_intersection,  ///< a boundary or interface triangle would intersect another
-  no_room,            ///< never returned, since arrays grow (kept because the statistics' keys are fixed)
+  no_room,            ///< never returned, since arrays grow; kept because the statistics' keys are fixed
   count,              ///< the number of tets would leave CountBounds
   too_large,          ///< the star or ring is too large to be worth the time
   volume,             ///< a material's volume would leave its bounds (VolumeLedger)
@@ -88,54 +88,54 @@ struct OperationCounts {
   }
 };
 
-/// Schedule of the block loop.
+/// Schedule of the block iteration.
 enum class Schedule : std::uint8_t {
-  tuned,  ///< README.md, The tuned schedule: best in experiments; closes with improvement
-  paper   ///< Figure 3 of the paper, with its operations in its order; nothing after it
+  tuned,  ///< README.md, The tuned schedule: best in experiments; ends with improvement
+  paper   ///< Figure 3 of the paper with its operations in its order; no improvement afterwards
 };
 
 struct SimplifyOptions {
-  std::size_t target_tets = 10000;  ///< at least 1; with a tolerance 0: as few as it allows
-  double min_solid_angle = 0.1;     ///< steradians; the closing rounds work on tets below it
-  double beta = 5;                  ///< the paper's: max edge, in ideal edges, that Quality does not penalise
-  double gamma = 10;                ///< the paper's: weight of the volume error against the length of an edge
-  int max_iterations = 100;         ///< of the block loop
+  std::size_t target_tets = 10000;  ///< at least 1; 0 with a tolerance: as few tets as that allows
+  double min_solid_angle = 0.1;     ///< steradians; the final improvement works on tets below it
+  double beta = 5;                  ///< the paper: max edge, in ideal edges, that Quality does not penalise
+  double gamma = 10;                ///< the paper: weight of the volume error relative to the edge length
+  int max_iterations = 100;         ///< of the block iteration
   Schedule schedule = Schedule::tuned;
-  ShapeObjective objective = ShapeObjective::both;  ///< of the closing improvement
-  /// Target of the projection of boundary and interface points; null: they stay in planes of constant volume.
-  /// Must outlive the call.
+  ShapeObjective objective = ShapeObjective::both;  ///< of the final improvement
+  /// Surface onto which boundary and interface points are projected; null: they stay in planes of constant
+  /// volume. Must outlive the call.
   const ReferenceSurface* reference = nullptr;
-  /// The given surface (input units), if there is one: the mesh's surface is fitted to it and kept near it.
-  /// Null: the input mesh's own surface. Must outlive the call.
+  /// The surface (input units) to which the mesh's surface is fitted and near which it is kept; null: the
+  /// input mesh's own surface. Must outlive the call.
   const TriangleMesh* surface = nullptr;
-  /// Max distance of any point of the mesh's surface from `surface` and vice versa, input units; without
-  /// `surface`, from the input mesh's own surface. 0: only the count bounds it. Parts that start farther away
-  /// are not moved nearer for it: SimplifyReport::deviation has the distance reached. Tuned schedule only.
+  /// Max two-sided distance between the mesh's surface and `surface` or, without one, the input mesh's own
+  /// surface; input units. 0: no bound. Parts that start farther away are not moved nearer:
+  /// SimplifyReport::deviation has the distance reached. Tuned schedule only.
   double tolerance = 0;
-  /// Target edge lengths (may be null) and their bounds, input units; tuned schedule only. A target length
-  /// decides the number of tets, so target_tets may be 0. `sizes` must outlive the call.
+  /// Target edge lengths (may be null) and bounds on edge lengths, input units; tuned schedule only. A target
+  /// length determines the number of tets, so target_tets may be 0. `sizes` must outlive the call.
   const SizeField* sizes = nullptr;
   double min_edge = 0, max_edge = std::numeric_limits<double>::infinity();
   std::uint64_t seed = 1;
   /// Max points or tets of a batch (BlockRunner); 0: chosen from the number of items. Results depend on it,
   /// never on the number of threads.
   std::size_t batch_size = 0;
-  /// One value for each point of the mesh, nonzero: frozen, never moved nor removed; tets with frozen points
-  /// only stay. Empty: none.
+  /// One value for each point of the mesh, nonzero if frozen: a frozen point is never moved or removed, and
+  /// tets with only frozen points are kept. Empty: none.
   std::vector<std::uint8_t> frozen;
   bool fix_boundary = false;  ///< freezes all points of boundary and interfaces, and so their faces
   std::string name = "mesh";  ///< the mesh's name in messages
 };
 
-/// Options of improve(): shapes only; the count stays within 5 % unless it is free.
+/// Options of improve(), which changes shapes only. The count stays within 5 % unless free_count is set.
 struct ImproveOptions {
-  /// Works only on tets worse, by the objective, than the shape_quality_bound() of this solid angle
-  /// (steradians), and on their surroundings. 0: all below 1.5 times min_solid_angle, and by cheap operations
-  /// all below 0.2.
+  /// Works only on tets whose shape, as rated by the objective, is worse than the shape_quality_bound() of
+  /// this solid angle (steradians), and on their surroundings. 0: works on all tets below 1.5 times
+  /// min_solid_angle, and with cheap operations on all below 0.2.
   double only_below = 0;
-  double min_solid_angle = 0.1;  ///< steradians; the work ends early once all are well above it
+  double min_solid_angle = 0.1;  ///< steradians; improvement ends early once all tets are well above it
   ShapeObjective objective = ShapeObjective::both;
-  /// Lets the count follow the shapes' needs: between 0.8 and 4 times the input's.
+  /// Lets the count vary as shapes require, between 0.8 and 4 times the input's.
   bool free_count = false;
   int max_iterations = 100;  ///< rounds
   std::uint64_t seed = 1;
@@ -146,16 +146,19 @@ struct ImproveOptions {
   std::string name = "mesh";
 };
 
-/// Record of one round of the block loop or of the improvement.
+/// Record of one round of the block iteration or of the improvement.
 struct IterationReport {
   std::string kind;  ///< "simplify", "close" (the end of simplify()) or "improve"
   std::size_t tets_before = 0, tets_after = 0;
-  /// Quality(t) below which tets are worked on; in the closing, the solid angle in steradians.
+  /// Number of tets before the iteration by Quality(t), worst first, in equal bins from 0 to 1; all 0 unless
+  /// the kind is "simplify".
+  std::array<std::size_t, 8> tets_by_quality{};
+  /// Quality(t) below which tets are worked on; in improvement, the solid angle in steradians.
   double cutoff = 0;
   double percent = 0;    ///< percentage of tets worked on
   double max_error = 0;  ///< E, input units
   OperationCounts counts;
-  /// Proposals that lost to an earlier one of their batch, and were decided again.
+  /// Proposals that lost to an earlier one of their batch and were decided again.
   std::uint64_t conflicts = 0;
   std::uint64_t repeats = 0;  ///< items that were decided again
   std::uint64_t batches = 0;
@@ -164,46 +167,46 @@ struct IterationReport {
 
 struct SimplifyReport {
   std::vector<IterationReport> iterations;
-  std::size_t touching_points = 0;  ///< points where parts touch without a common face: they stay as they are
-  std::vector<std::uint64_t> decided_by_worker;  ///< decided items; the sum does not depend on the threads
+  std::size_t touching_points = 0;  ///< points where parts touch without a common face; kept unchanged
+  std::vector<std::uint64_t> decided_by_worker;  ///< decided items; the sum is independent of the threads
   std::optional<DeviationReport> deviation;      ///< with a tolerance
-  bool out_of_time = false;                      ///< ended early by the deadline of the Progress
+  bool out_of_time = false;                      ///< the deadline of the Progress ended the call early
   double seconds_build = 0, seconds_simplify = 0, seconds_close = 0;
 };
 
-/// Simplifies a valid mesh to about `target_tets` (within 1 % where topology and shapes allow) and improves
-/// its shapes: the block iteration of Cutler, Dorsey & McMillan 2004 with a tuned schedule (README.md), then
-/// closing rounds at that count. A mesh with fewer tets than the target is only improved.
+/// Simplifies a valid mesh to about `target_tets` (within 1 % if topology and shapes allow) and improves its
+/// shapes: the block iteration of Cutler, Dorsey & McMillan 2004 with a tuned schedule (README.md), then
+/// improvement at that count. A mesh with fewer tets than the target is only improved.
 ///
-/// Every material, component, handle, cavity and interface survives; the boundary does not come to intersect
-/// itself; all tets stay positive by exact sign. The result has its interface triangles. Uses thread_count()
-/// threads; the same input, options and seed give the same bytes for any number of them.
+/// Preserves every material, component, handle, cavity and interface, creates no self-intersections of the
+/// boundary, and keeps all tets positive by exact sign. The result contains its interface triangles. Uses
+/// thread_count() threads; the same input, options and seed give the same bytes for any number of them.
 ///
-/// The deadline of `progress` ends the work with the current mesh, as valid as ever (the input, perhaps
-/// renumbered, if nothing has changed yet). The loop ends earlier, so that shapes can still be improved, and
-/// with a tolerance the improvement ends earlier, so that distances can be measured. The final renumbering,
-/// and the least work that bounds the distances, exceed the deadline.
+/// When the deadline of `progress` passes, returns the current mesh, which is valid (the input, possibly
+/// renumbered, if nothing has changed yet). The block iteration ends earlier to leave time for improving
+/// shapes; with a tolerance, the improvement ends earlier to leave time for measuring distances. The final
+/// renumbering and the minimum work that bounds the distances may exceed the deadline.
 ///
-/// \param report gets the record of the work; may be null.
+/// \param report receives statistics; may be null.
 /// \param progress may be null.
 /// \throws InputError if a coordinate is not finite, a tet repeats a point or a face has more than two tets.
-/// \throws OutputError if there is too little memory.
-/// \throws UsageError for impossible options.
+/// \throws OutputError if there is not enough memory.
+/// \throws UsageError for invalid options.
 /// \throws Interrupted when cancelled.
 TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report = nullptr,
                  Progress* progress = nullptr);
 
-/// Two-sided distance between a mesh's surface and the surface that it was made from, with proven bounds.
-/// Works on a copy. Parallel; the result does not depend on the threads.
+/// Two-sided distance between a mesh's surface and the surface from which it was made, with proven bounds.
+/// Works on a copy. Parallel; the result does not depend on the number of threads.
 ///
-/// \param surface wound outwards, input units.
-/// \param progress ends it as it ends surface_deviation(); may be null.
+/// \param surface oriented outwards, input units.
+/// \param progress may end the computation early, as in surface_deviation(); may be null.
 /// \throws InputError as simplify().
 DeviationReport deviation(const TetMesh& mesh, const TriangleMesh& surface,
                           const Progress* progress = nullptr);
 
-/// Improves the shapes of a mesh at about its count, like the end of simplify(), with the same guarantees,
-/// threads and errors.
+/// Improves the shapes of a mesh while roughly keeping its count, as at the end of simplify(). Guarantees,
+/// parallelism and exceptions are those of simplify().
 TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* report = nullptr,
                 Progress* progress = nullptr);
 

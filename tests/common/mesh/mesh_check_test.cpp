@@ -15,7 +15,7 @@ namespace {
 /// Names and counts, in order.
 std::vector<std::pair<std::string, std::size_t>> found(const TetMesh& mesh) {
   std::vector<std::pair<std::string, std::size_t>> out;
-  for (const MeshFinding& f : check_mesh(mesh)) out.emplace_back(mesh_fault_name(f.fault), f.count);
+  for (const MeshFinding& f : check_mesh(mesh)) out.emplace_back(mesh_finding_name(f), f.count);
   return out;
 }
 using Found = std::vector<std::pair<std::string, std::size_t>>;
@@ -58,7 +58,7 @@ TEST(MeshCheck, PlacesAreNamed) {
   mesh.tets[1] = {0, 1, 2, 4};
   const std::vector<MeshFinding> findings = check_mesh(mesh);
   ASSERT_EQ(findings.size(), 1u);
-  EXPECT_EQ(findings[0].fault, MeshFault::inverted);
+  EXPECT_EQ(findings[0].code, DiagnosticCode::inverted);
   EXPECT_EQ(mesh_finding_line(findings[0]), "inverted or flat tets (inverted): 1, at tet 1 (0 1 2 4)");
 }
 
@@ -106,7 +106,7 @@ TEST(MeshCheck, BoundaryThatIntersectsItself) {
   mesh.materials.push_back(1);
   const std::vector<MeshFinding> findings = check_mesh(mesh);
   ASSERT_EQ(findings.size(), 1u);
-  EXPECT_EQ(findings[0].fault, MeshFault::self_intersections);
+  EXPECT_EQ(findings[0].code, DiagnosticCode::self_intersections);
   EXPECT_EQ(findings[0].count, 3u);  // the far face of the first meets the three near faces of the second
   EXPECT_TRUE(check_mesh(mesh, {.self_intersections = false}).empty());
 }

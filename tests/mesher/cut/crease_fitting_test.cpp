@@ -35,7 +35,7 @@ std::map<Index, std::set<std::uint16_t>> patches_at_points(const TetMesh& mesh) 
 
 struct CreaseNumbers {
   std::size_t corners = 0;     ///< points of three patches
-  std::size_t odd = 0;         ///< other ends and branchings of creases
+  std::size_t odd = 0;         ///< other ends and branch points of creases
   double max_distance = 0;     ///< distance of points of two patches from the creases
   double max_off_corner = 0;   ///< distance of points of three patches from the corners
   double max_off_surface = 0;  ///< distance of all boundary points from their patches
@@ -122,13 +122,13 @@ TEST(CreaseFitting, FollowsCurvedRims) {
   EXPECT_EQ(dense.report.features[0].found.count, 3U);
 }
 
-// The sides are smaller than eight squared cells, but the cells there are smaller.
+// The sides are smaller than eight squared cells, but thin bodies get smaller cells.
 TEST(CreaseFitting, KeepsTheSidesOfAThinRod) {
   TriangleMesh rod = unit_cube();
   for (Vec3& p : rod.points) p.x() *= 400;
   const DenseMesh dense = mesh_of(turned(rod), 32);
   ASSERT_EQ(dense.report.features.size(), 1u);
-  EXPECT_GE(dense.report.features[0].found.count, 4u);  // the ends are that small
+  EXPECT_GE(dense.report.features[0].found.count, 4u);  // the ends may be too small for patches
   double volume = 0;
   for (const auto& [a, b, c, d] : dense.mesh.tets)
     volume +=

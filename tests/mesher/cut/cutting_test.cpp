@@ -53,8 +53,8 @@ TEST(Cutting, CutsAreSharedAndOffTheEnds) {
   EXPECT_GT(cuts, 0u);
 }
 
-// cut_lattice() and worst_piece_tangent() choose the diagonals separately: a tet that got those of another
-// tet in either of them would have other angles there.
+// cut_lattice() and worst_piece_tangent() choose diagonals separately. If one of them used the diagonals of
+// another tet, its angles would differ.
 TEST(Cutting, EachTetHasTheAnglesOfItsOwnPieces) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     Random random(seed);

@@ -9,7 +9,8 @@
 namespace tetwright::independent_rounds_test {
 namespace {
 
-// Each point takes one more than the largest number within two edges, so the result depends on the order.
+// Each point is assigned one more than the largest number within two edges, so the result depends on the
+// order.
 TEST(IndependentRounds, AreLikeOneAfterTheOther) {
   const LabelledLattice lattice = make_lattice([](const Vec3& p) { return p.x() + p.y() < 5.2 ? 1 : 0; });
   std::vector<Index> points = lattice.stars.points();

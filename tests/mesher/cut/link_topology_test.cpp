@@ -30,7 +30,7 @@ TEST(LinkTopology, FlatInterface) {
 TEST(LinkTopology, AThinWallKeepsItsInside) {
   // The outside is on both sides of the wall.
   EXPECT_EQ(meeting(make_lattice([](const Vec3& p) { return p.z() == 3 ? 1 : 0; }), {3, 3, 3}), Regions{});
-  // In a sheet between two materials the other side is another region.
+  // For a sheet between two materials the other side is another region.
   EXPECT_EQ(
       meeting(make_lattice([](const Vec3& p) { return p.z() == 3  ? 1
                                                       : p.z() < 3 ? 2
@@ -39,7 +39,7 @@ TEST(LinkTopology, AThinWallKeepsItsInside) {
 }
 
 TEST(LinkTopology, ANeckIsNotClosed) {
-  // A rod one point across: its points have the inside at two ends.
+  // A rod one point thick: each point has inside neighbours at both ends.
   EXPECT_EQ(meeting(make_lattice([](const Vec3& p) { return p.x() == 3 && p.y() == 3 ? 1 : 0; }), {3, 3, 3}),
             Regions{});
 }

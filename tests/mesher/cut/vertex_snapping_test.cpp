@@ -35,7 +35,7 @@ double bad_share(const LabelledLattice& lattice) {
   return static_cast<double>(count) / static_cast<double>(all);
 }
 
-/// Expects a sound lattice, points on interfaces on all sheets that meet there, and better pieces.
+/// Expects a valid lattice, points on interfaces that lie on all sheets that meet there, and better pieces.
 void expect_moves_well(const std::vector<TriangleMesh>& surfaces, double cell, double bad_after) {
   const auto field = make_field(surfaces, cell);
   LabelledLattice lattice = lattice_of(*field);

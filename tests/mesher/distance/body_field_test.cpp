@@ -30,7 +30,7 @@ LabelVolume two_part_ball(const Eigen::Matrix3d& directions) {
   return volume;
 }
 
-/// Writes and reads the labels' level sets: each keeps its volume and position, for any axes and cells.
+/// Writes and reads the labels' level sets: each preserves its volume and position, for any axes and cells.
 void expect_same_again(const Eigen::Matrix3d& directions, double cells_per_voxel, double tolerance) {
   const TemporaryFolder folder;
   const LabelVolume volume = two_part_ball(directions);
@@ -64,8 +64,8 @@ void expect_same_again(const Eigen::Matrix3d& directions, double cells_per_voxel
 TEST(FieldBuilder, FieldsOfLabelsAreWrittenWithTheirOwnBand) {
   const Eigen::Matrix3d straight = Vec3(1, 1, 1.5).asDiagonal();
   expect_same_again(straight, 1, 0.05);
-  expect_same_again(straight, 2.5, 0.05);  // a band wider than that of surfaces
-  expect_same_again(straight, 0.4, 0.15);  // less than a cell, which rims do not resolve
+  expect_same_again(straight, 2.5, 0.05);  // the band is wider than that of surfaces
+  expect_same_again(straight, 0.4, 0.15);  // rims thinner than a cell are not resolved
 }
 
 TEST(FieldBuilder, FieldsOfTurnedAndMirroredLabels) {

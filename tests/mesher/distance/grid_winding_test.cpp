@@ -10,7 +10,8 @@ namespace {
 
 constexpr std::array<int, 3> cells{24, 24, 24};
 
-/// Expects the inside where the distance is negative; skips points where the triangles of the spheres decide.
+/// Expects the inside where the distance is negative; skips points where the tessellation of the spheres
+/// matters.
 template <class Distance>
 void expect_inside(const TriangleMesh& mesh, Distance&& distance) {
   const GridWinding winding(mesh.points, mesh.triangles, cells);
@@ -36,7 +37,7 @@ TEST(GridWinding, OverlapIsInside) {
                 [&](const Vec3& p) { return std::min((p - a).norm() - 5.02, (p - b).norm() - 4.98); });
 }
 
-// Every line through the grid meets edges, vertices and faces in their planes.
+// Every line through the grid hits edges or vertices or lies in the plane of a face.
 TEST(GridWinding, BoxOnGridPoints) {
   const GridWinding winding(make_box({3, 4, 5}, {10, 12, 14}).points,
                             make_box({3, 4, 5}, {10, 12, 14}).triangles, cells);

@@ -15,7 +15,7 @@ namespace {
 const Vec3 centre(20.2, 19.7, 20.4);
 constexpr double radius = 9.3;
 
-/// An inside without any surface: a ball whose winding number falls off slowly.
+/// An inside without any surface: a ball whose winding number decreases slowly.
 GridReading ball(int x, int y, int z) {
   const double w = DistanceTuning::Caps::inside_winding + 0.02 * (radius - (Vec3(x, y, z) - centre).norm());
   return {w >= DistanceTuning::Caps::inside_winding ? -3.0 : 3.0, w};
@@ -30,7 +30,7 @@ std::vector<GridEdge> ball_seed() {
 TEST(HoleCaps, GoesAllAroundFromOneEdge) {
   const TriangleMesh cap = cap_holes(ball_seed(), ball, nullptr);
   for (const Vec3& p : cap.points) EXPECT_NEAR((p - centre).norm(), radius, 0.3);
-  EXPECT_NEAR(enclosed_volume(cap), 4.18879 * radius * radius * radius, 100);  // wound outwards
+  EXPECT_NEAR(enclosed_volume(cap), 4.18879 * radius * radius * radius, 100);  // oriented outwards
   std::map<std::pair<Index, Index>, int> sides;
   for (const Triangle& t : cap.triangles)
     for (int k = 0; k < 3; ++k) {
@@ -40,7 +40,7 @@ TEST(HoleCaps, GoesAllAroundFromOneEdge) {
   for (const auto& [edge, balance] : sides) EXPECT_EQ(balance, 0);
 }
 
-// One half has a surface: the cap ends where the surface begins.
+// One half has a surface. The cap ends where the surface begins.
 TEST(HoleCaps, EndsAtTheSurface) {
   const auto read = [](int x, int y, int z) {
     GridReading reading = ball(x, y, z);

@@ -31,7 +31,7 @@ struct Solid {
   Solid(const TriangleMesh& mesh, double cell) : Solid(prepared(mesh, mesh.triangles.size()), cell) {}
 };
 
-/// The mesh without the triangles for whose middles `drop` is true.
+/// The mesh without the triangles for whose centroids `drop` is true.
 template <class Drop>
 TriangleMesh without(const TriangleMesh& mesh, Drop&& drop) {
   TriangleMesh left{mesh.points, {}};
@@ -104,7 +104,7 @@ TEST(LevelSet, SignsBeyondTheBand) {
       for (int z = 0; z <= n[2]; z += 5) {
         const double r = (shell.frame.to_input(Vec3(x, y, z)) - c).norm();
         const double distance = std::max(r - 150, 60 - r);
-        if (std::abs(distance) < 8) continue;  // depends on the triangles of the spheres
+        if (std::abs(distance) < 8) continue;  // depends on the tessellation of the spheres
         ASSERT_EQ(sampler.at_node(x, y, z), distance < 0 ? -level_set_band : level_set_band)
             << x << ' ' << y << ' ' << z;
       }
@@ -148,8 +148,8 @@ TEST(LevelSet, SphereWithAHoleIsCapped) {
   const Solid open(prepared(without(sphere, [](const Vec3& p) { return p.z() > 15.3; }), 0), 1);
   EXPECT_LE(max_jump(open), 1.03);
   LevelSetSampler sampler(*open.level_set);
-  // A flat rim has a flat cap. Where cap and sphere are far from each other the distance is that of the
-  // closer one.
+  // A flat rim has a flat cap. Where cap and sphere are far from each other, the distance is from the closer
+  // one.
   const double rim = 15.3;
   for_each_node(open.frame, [&](int x, int y, int z) {
     const Vec3 p = open.frame.to_input(Vec3(x, y, z)) - Vec3(0.1, 0.2, 0.3);
@@ -234,7 +234,7 @@ TEST(LevelSet, BoxWithoutALid) {
   });
 }
 
-// An open part reaches into a closed one, next to a closed cavity.
+// An open part extends into a closed one, next to a closed cavity.
 TEST(LevelSet, OpenAndClosedPartsTogether) {
   const TriangleMesh closed =
       joined(make_sphere(14.3, {0.1, 0.2, 0.3}), turned_over(make_sphere(6.2, {-4.1, 0.2, 0.3})));

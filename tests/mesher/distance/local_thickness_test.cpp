@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Thin walls and gaps: kept whole, thickened or closed as a whole, refined within a budget.
+// Thin walls and gaps: kept, thickened or closed as a whole, and refined within a budget.
 #include "mesher/distance/local_thickness.h"
 
 #include <gtest/gtest.h>
@@ -59,7 +59,7 @@ TEST(ThinWalls, PlatesOfAnyThinnessStayWholeInCellsOfAnySize) {
       EXPECT_EQ(found.components, 1) << thickness << " turned " << turn;
       EXPECT_EQ(found.handles, 0) << thickness << " turned " << turn;
       EXPECT_EQ(dense.report.refinement, 0);
-      // Walls are reported exactly where they are thicker than they should be.
+      // Walls are reported exactly where they are thicker than in the input.
       if (thickness >= 1.25) {
         EXPECT_EQ(dense.report.thickened.points, 0u) << thickness;
       }
@@ -235,8 +235,8 @@ TEST(ThinWalls, TheBudgetGoesToWholeRegionsTheCheapestFirst) {
   choose_depths({&measured}, {3, max_wall_refinement, true, 50, 1000});
   EXPECT_EQ(measured.regions[2].depth, 1);
   EXPECT_EQ(measured.regions[1].depth, 3);
-  EXPECT_EQ(measured.regions[3].depth, 4);  // deeper than 3 while that adds less than 50
-  EXPECT_EQ(measured.regions[0].depth, 1);  // 225 of the 900, as nearly all is spent
+  EXPECT_EQ(measured.regions[3].depth, 4);  // deeper than 3, since that adds less than 50
+  EXPECT_EQ(measured.regions[0].depth, 1);  // 225 instead of 900, since nearly all of the budget is spent
   choose_depths({&measured}, {0, max_wall_refinement, false, 50, 1000});
   for (const LocalThickness::Region& r : measured.regions) EXPECT_EQ(r.depth, 0);
   choose_depths({&measured}, {3, 2, true, 50, 1e9});

@@ -69,7 +69,7 @@ TEST(MaterialField, TheNearestOfManyRegionsHasTheSmallestDistance) {
   }
 }
 
-// A later body carves an earlier one, and outside is where no body is; also under a finer lattice.
+// A later body carves an earlier one, and the outside is where no body is; also on a finer lattice.
 TEST(MaterialField, LaterMaterialsCarveEarlierOnes) {
   const auto coarse = make_field({make_sphere(1), make_sphere(0.6, {0.7, 0.03, 0.01})}, 0.05);
   for (int refinement : {0, 2}) {

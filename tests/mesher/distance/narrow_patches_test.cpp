@@ -44,7 +44,7 @@ TEST(NarrowPatches, AreNotWhereCreasesMeetInACorner) {
   const Found found = find(0.8, 3);
   ASSERT_FALSE(found.narrow.voxels.empty());
   EXPECT_TRUE(std::is_sorted(found.narrow.voxels.begin(), found.narrow.voxels.end()));
-  // All of the chamfer but its ends, and nothing else.
+  // All of the chamfer except its ends, and nothing else.
   const Vec3 low = found.frame.to_grid({1, 1, 0}), high = found.frame.to_grid({1, 1, 1});
   double lowest = 1e9, highest = 0;
   for (const MortonKey key : found.narrow.voxels) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Exact distances, insides and thicknesses of surfaces.
+// Exact distances, inside tests and thicknesses of surfaces.
 #include "mesher/distance/surface_distance.h"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ SurfaceDistance distance_of(const TriangleMesh& mesh) {
   return {mesh.points, mesh.triangles, mesh.triangles.size(), {}, false};
 }
 
-/// Rotated about an axis that is not one of the grid's.
+/// The mesh rotated about an axis oblique to the grid.
 TriangleMesh turned(TriangleMesh mesh) {
   const Eigen::AngleAxisd turn(0.7, Vec3(1, 2, 3).normalized());
   for (Vec3& p : mesh.points) p = turn * p;
@@ -32,7 +32,7 @@ TEST(SurfaceDistance, InsideIsExactOnGridPlanesToo) {
   EXPECT_TRUE(box.inside(Vec3(2, 2, 1e-12)));
   EXPECT_FALSE(box.inside(Vec3(2, 2, -1e-12)));
   EXPECT_FALSE(box.inside(Vec3(2, 2, 1 + 1e-12)));
-  // A box inside a box, wound inwards: a cavity.
+  // A box inside a box, oriented inwards: a cavity.
   const SurfaceDistance hollow = distance_of(
       joined(make_box(Vec3(0, 0, 0), Vec3(3, 3, 3)), turned_over(make_box(Vec3(1, 1, 1), Vec3(2, 2, 2)))));
   EXPECT_FALSE(hollow.inside(Vec3(1.5, 1.5, 1.5)));

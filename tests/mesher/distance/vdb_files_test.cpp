@@ -27,7 +27,7 @@ class VdbFiles : public testing::Test {
   VdbFiles() { openvdb::initialize(); }
   std::string path(const std::string& name) const { return folder_ / name; }
 
-  /// Writes a sphere's level set with our own writer.
+  /// Writes a sphere's level set with write_level_sets().
   void write_sphere(const std::string& file, const std::string& name, double radius, const Vec3& centre,
                     double cell) const {
     const TriangleMesh mesh = make_sphere(radius, centre, 5);
@@ -318,7 +318,7 @@ TEST_F(VdbFiles, ALevelSetComesBeforeLabels) {
   write_grids(file, {labels, ball("b")});
   EXPECT_FALSE(read_label_grid(file));
   EXPECT_EQ(read_level_sets(file).size(), 1u);
-  // Also if the labels are unusable.
+  // Labels are ignored even if they are unusable.
   labels->setTransform(
       openvdb::math::Transform::createFrustumTransform(openvdb::BBoxd({0, 0, 0}, {10, 10, 10}), 0.5, 10));
   write_grids(file, {labels, ball("b")});
@@ -358,7 +358,7 @@ TEST_F(VdbFiles, SaysWhatIsWrongWithLabels) {
 
 // As for level sets.
 TEST_F(VdbFiles, DamagedLabels) {
-  // Voxels far away that damage makes active are refused before they take memory.
+  // Distant voxels that damage makes active are refused before memory is allocated for them.
   constexpr std::size_t max_voxels = 1 << 20;
   const std::string file = path("damaged.vdb");
   for (const std::uint32_t compression : {0u, 2u, 3u, 6u}) {

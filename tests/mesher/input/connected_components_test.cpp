@@ -48,7 +48,7 @@ class Plain {
   Regions merge(std::size_t min_voxels) {
     for (;;) {
       std::vector<std::vector<std::size_t>> islands = find();
-      // In order of their lowest voxels so far; the sort keeps equal sizes in that order.
+      // Islands are in order of their lowest voxels, which a stable sort by size preserves.
       const auto largest = std::max_element(islands.begin(), islands.end(),
                                             [](const auto& a, const auto& b) { return a.size() < b.size(); });
       if (largest->size() < min_voxels) return regions_;
@@ -181,7 +181,7 @@ TEST(ConnectedComponents, BetweenEqualNeighboursTheSmallestRegionIsJoined) {
 }
 
 TEST(ConnectedComponents, OfEqualIslandsThatWithTheLowestVoxelIsFirst) {
-  // The 1 joins the 2, which then is large enough; in the opposite order the 2 would be gone.
+  // The 1 joins the 2, which is then large enough; in the opposite order the 2 would vanish.
   EXPECT_EQ(merged_row("3331233", 2), "3332233");
   // Here the 2 joins the 1.
   EXPECT_EQ(merged_row("3332133", 2), "3331133");
@@ -197,7 +197,7 @@ TEST(ConnectedComponents, ChainsOfMerges) {
   EXPECT_EQ(merged_row("44444112300000", 1), "44444112300000");
   EXPECT_EQ(merged_row("5555552311155555", 4), "5555551111155555");
   EXPECT_EQ(merged_row("9999991299999", 4), "9999999999999");
-  // An island that joins two of one region makes them one, large enough.
+  // An island that joins two islands of one region unites them into one that is large enough.
   EXPECT_EQ(merged_row("999991121199999", 5), "999991111199999");
 }
 
@@ -210,13 +210,13 @@ TEST(ConnectedComponents, OutsideGoesOnBeyondTheBorder) {
                          "111",
                          4),
             "111110111");
-  // A slice has no way out across its plane.
+  // The outside of a slice does not continue across its plane.
   EXPECT_EQ(merged_plane("111"
                          "101"
                          "111",
                          4),
             "111111111");
-  // Islands that join it are outside for good, however small both are.
+  // Islands that join the outside at the border stay outside, however small both are.
   EXPECT_EQ(merged_row("22222223100", 5), "22222220000");
   Regions notch(27, 1);
   notch[13 - 9] = outside_region;  // the middle of the lowest plane

@@ -44,7 +44,7 @@ TEST(ExpectedSolids, LaterBodiesCarveEarlierOnes) {
                      beside = make_box(Vec3(6, 6, 6), Vec3(8, 8, 8)),
                      away = make_box(Vec3(11, 0, 0), Vec3(12, 1, 1));
   const auto solids = expected_solids(make_input({large, middle, inner, beside, away}));
-  expect_solid(solids[0], 1000 - 64 - 8, 1, 0, 2);  // the innermost is a part of the middle one here
+  expect_solid(solids[0], 1000 - 64 - 8, 1, 0, 2);  // the innermost is part of the middle one here
   expect_solid(solids[1], 64 - 1, 1, 0, 1);
   expect_solid(solids[2], 1, 1, 0, 0);
   expect_solid(solids[3], 8, 1, 0, 0);
@@ -88,7 +88,7 @@ TEST(ExpectedSolids, AnEstimateWhereAClosedSurfaceIntersectsItself) {
                      inner = make_box(Vec3(2.8, -0.2, -0.2), Vec3(3.2, 0.2, 0.2));
   const double volume = enclosed_volume(crossing);
   expect_solid(expected_solids(make_input({crossing}))[0], volume, 2, 2, 0, SurfaceFlaw::intersecting);
-  // Others that do not meet it carve it, and are certain by themselves.
+  // Other surfaces that do not meet it carve it, and are certain on their own.
   const auto carved = expected_solids(make_input({crossing, inner}));
   expect_solid(carved[0], volume - 0.064, 2, 2, 1, SurfaceFlaw::intersecting);
   expect_solid(carved[1], 0.064, 1, 0, 0);

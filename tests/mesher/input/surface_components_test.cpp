@@ -75,7 +75,7 @@ TEST(SurfaceComponents, ASheetListedFromBothSidesStaysOne) {
   EXPECT_EQ(found(input, "open components whose outside is unclear"), 1u);
 }
 
-// Listing the other side of some triangles too is no reason for a hole.
+// Listing some triangles from both sides must not open a hole.
 TEST(SurfaceComponents, APatchListedFromBothSidesStaysClosed) {
   TriangleMesh sphere = make_sphere(1);
   const std::size_t n = sphere.triangles.size();
@@ -117,7 +117,7 @@ TEST(SurfaceComponents, AWallBetweenTwoCubesIsLeftOut) {
   }
 }
 
-// Two halves wound against each other, and a collar of single triangles around their common rim.
+// Two halves with opposite orientations, and a collar of single triangles around their common rim.
 TEST(SurfaceComponents, HalvesThatMeetAtACollarAreClosed) {
   TriangleMesh mesh = make_sphere(1);
   const std::size_t n = mesh.triangles.size();

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double unit_sphere = 4 * std::numbers::pi / 3;
 
-/// Concentric spheres around the origin, wound outwards where the sign is 1, and the winding numbers between
+/// Concentric spheres around the origin, oriented outwards if the sign is 1, and the winding numbers between
 /// them.
 struct Nest {
   std::vector<int> signs;  ///< for the radii 3, 2, 1 and so on
@@ -99,7 +99,7 @@ TEST(SurfaceNesting, MaterialSplitsThemOutOutermostFirst) {
   EXPECT_NEAR(input.surface.volume, 64 * unit_sphere, 3);
 }
 
-// The probe of each is inside the other one, but they cross: none encloses the other.
+// The probe of each is inside the other one, but they intersect, so neither encloses the other.
 TEST(SurfaceNesting, OverlappingSpheresOfOppositeSenseBecomeOne) {
   for (const double apart : {0.3, 1.0, 1.6})
     for (const double radius : {1.0, 0.8})

@@ -88,7 +88,7 @@ TEST(SurfaceRepair, FindingsNameTheFirstPlace) {
   EXPECT_NE(input.findings[0].done, "");
 }
 
-// A point in the middle of an edge on one side of it: the flat triangle closes the gap.
+// A point in the middle of an edge, used on one side only. The flat triangle closes the gap.
 TEST(SurfaceRepair, FlatTrianglesKeepTheirNeighboursTogether) {
   TriangleMesh box = make_box({0, 0, 0}, {1, 1, 1});
   box.points.emplace_back(0, 0.5, 0.5);  // on the edge 0-6 of the triangles 0 4 6 and 0 6 2

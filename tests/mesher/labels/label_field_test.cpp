@@ -63,7 +63,7 @@ TEST(LabelFrame, EndsAtTheBorderOfTheVolume) {
         EXPECT_GT(ends[1][a] - ends[0][a], 0.5);
         EXPECT_LE(frame.box[a], frame.cells[a]);
         EXPECT_EQ(frame.cells[a] % (1 << frame.root_level), 0);
-        // Whole cells that fill a side are off by at most half a cell in total.
+        // Whole cells that fill a side deviate by at most half a cell in total.
         const double side = directions.col(a).norm() * labels.size[a];
         EXPECT_NEAR(frame.axes.col(a).norm() * frame.box[a] * cell, side, 1e-9);
         EXPECT_LE(std::abs(frame.box[a] * cell - side), 0.5 * cell + 1e-9);

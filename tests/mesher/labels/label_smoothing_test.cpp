@@ -17,7 +17,8 @@ constexpr int cells = LabelSmoother::cells, nodes = LabelSmoother::nodes, reach 
 using Labels = std::function<RegionIndex(int x, int y, int z)>;
 using Node = std::array<int, 3>;
 
-/// The nodes of a tile that tests examine: a corner of it, and its faces, which neighbouring tiles share.
+/// Selects the nodes of a tile that tests examine: a corner of it, and its faces, which neighbouring tiles
+/// share.
 bool is_looked_at(int x, int y, int z) {
   constexpr int corner = 16;
   const auto on_face = [](int i) { return i == 0 || i == nodes - 1; };
@@ -74,7 +75,8 @@ std::vector<Named> all_labels() {
 }
 
 TEST(LabelSmoothing, NodesOfNeighbouringTilesAreTheSameBits) {
-  // A fresh smoother for each tile and one for all must agree: nothing of the last tile may remain.
+  // A new smoother for each tile and one smoother for all tiles must agree, so no state of a previous tile
+  // may remain.
   LabelSmoother used;
   for (const Named& n : all_labels()) {
     SCOPED_TRACE(n.what);
@@ -100,7 +102,7 @@ TEST(LabelSmoothing, NodesOfNeighbouringTilesAreTheSameBits) {
   }
 }
 
-/// Voxels of each label in the cells of the tile's first part, by very many samples of the trilinear
+/// Volume of each label in the cells of the tile's first part, voxels, by dense sampling of the trilinear
 /// distances.
 std::map<RegionIndex, double> sampled_shares(const LabelSmoother& smoother, int along) {
   constexpr int samples = LabelSmoother::part_cells;
@@ -132,7 +134,7 @@ TEST(LabelSmoothing, SharesAreTheVolumes) {
     SCOPED_TRACE(n.what);
     LabelSmoother smoother;
     distances(smoother, {0, 0, 0}, n.labels);
-    if (smoother.labels().size() > 8) continue;  // too much to sample
+    if (smoother.labels().size() > 8) continue;  // sampling would take too long
     // Rods from corner to corner are narrower than two samples.
     const double tolerance = std::string_view(n.what) == "checkerboard" ? 0.15 : 0.02;
     std::map<RegionIndex, double> exact = sampled_shares(smoother, 9);
@@ -198,7 +200,7 @@ TEST(LabelSmoothing, AFlatInterfaceIsWhereTheVoxelsHaveIt) {
 }
 
 TEST(LabelSmoothing, ASlantedInterfaceIsNearlyFlat) {
-  // Half a voxel from the lowest centres above and the highest below.
+  // The plane is half a voxel from the lowest centres above it and the highest below it.
   constexpr double a = 0.37, b = 0.21;
   LabelSmoother smoother;
   const auto height = [](int x, int y) { return 3.2 + a * x + b * y; };

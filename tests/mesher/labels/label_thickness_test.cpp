@@ -19,7 +19,7 @@ namespace {
 
 using Size = std::array<int, 3>;
 
-/// A literal implementation of the rules: tries boxes at every voxel, those of the outside also beyond the
+/// A literal implementation of the rules: tries boxes at every voxel, and for the outside also beyond the
 /// volume.
 std::vector<Vec3> thin_by_the_rules(const LabelInput& labels, const Size& sides) {
   const auto at = [&](const Size& v) {

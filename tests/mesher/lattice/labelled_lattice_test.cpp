@@ -130,7 +130,7 @@ TEST(LabelledLattice, SpecksGoAndPairsStay) {
       [](const Vec3& p) { return p == Vec3(3, 3, 3) || p == Vec3(3, 3, 2) ? 1 : 0; }, &isolated_vertices);
   EXPECT_EQ(isolated_vertices, 0u);
   EXPECT_EQ(count_of(pair, 1), 2);
-  // Among several regions the majority of the neighbours wins.
+  // Among several regions the one of most neighbours is chosen.
   const auto third = make_lattice([](const Vec3& p) { return p == Vec3(3, 3, 3) ? 3
                                                              : p.z() < 3.2      ? 2
                                                                                 : 1; },

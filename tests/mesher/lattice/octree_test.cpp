@@ -11,7 +11,7 @@
 namespace tetwright::octree_test {
 namespace {
 
-/// Expects consecutive leaves along the curve, without gap or overlap, to add up to the box.
+/// Expects leaves along the curve to be consecutive, without gaps or overlaps, and to fill the box.
 void expect_covers_box(const Octree& octree) {
   double volume = 0;
   for (std::size_t i = 0; i < octree.size(); ++i) {
@@ -87,7 +87,8 @@ TEST(Octree, GrowsWithTheSurfaceNotTheVolume) {
       expect_balanced(octree);
       if (before) {
         const double ratio = static_cast<double>(octree.size()) / static_cast<double>(before);
-        // The finer the cells, the flatter the sphere in them: with a tolerance fewer are needed.
+        // With a tolerance, fewer cells are needed at higher resolutions, since the sphere is flatter in
+        // smaller cells.
         EXPECT_GT(ratio, adaptivity > 0 ? 2 : 3) << resolution;
         EXPECT_LT(ratio, 5) << resolution;
       }

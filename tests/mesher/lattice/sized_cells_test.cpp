@@ -31,13 +31,13 @@ TEST(SizedCells, AreSmallWhereThatIsWanted) {
   MesherOptions options;
   options.resolution = 24;
   const DenseMesh before = mesh_surfaces(input, options, nullptr);
-  // Smaller than a voxel, only in the middle of the ball.
+  // Request cells smaller than a voxel in the middle of the ball only.
   const double wanted = 0.05 * radius;
   ASSERT_GT(before.report.cell_size, wanted);
   options.max_cell = [&](const Vec3& p) { return (p - centre).norm() < 0.3 * radius ? wanted : 10 * radius; };
   const DenseMesh after = mesh_surfaces(input, options, nullptr);
   EXPECT_TRUE(check_mesh(after.mesh).empty());
-  // The longest edge of the lattice's tets is that of a cell.
+  // The longest edge of lattice tets is the edge of a cell.
   EXPECT_GT(longest_edge(before.mesh, centre, 0.25 * radius), 2 * wanted);
   EXPECT_LE(longest_edge(after.mesh, centre, 0.25 * radius), 1.0001 * wanted);
   // The outside of the body is not refined.

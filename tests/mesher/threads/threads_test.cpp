@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The parallel stages from field to cut mesh on many threads, for the thread sanitizer.
+// Runs the parallel stages from field to cut mesh on many threads, for the thread sanitizer.
 #include <gtest/gtest.h>
 
 #include "mesher/cut/cutting.h"

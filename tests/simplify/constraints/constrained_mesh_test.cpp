@@ -29,7 +29,7 @@ TEST(ConstrainedMesh, FreezesAndBoundsVolumesAsAsked) {
     EXPECT_FALSE(open.mesh.frozen(p));
     frozen += bounded.mesh.frozen(p);
   }
-  EXPECT_EQ(frozen, 56u);  // all of 4^3 points but 2^3
+  EXPECT_EQ(frozen, 56u);  // all 4^3 points except 2^3
   const double volume = open.mesh.total_volume();
   const std::vector<VolumeChange> tenth{{0, 0.1 * volume}}, some{{0, 0.007 * volume}},
       more{{0, 0.009 * volume}};

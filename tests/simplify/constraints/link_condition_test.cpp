@@ -64,7 +64,7 @@ TEST(LinkCondition, WhatPassesKeepsTheTopology) {
     });
     jitter(mesh, seed);
     Workbench w(mesh);
-    // Collapse some points first: links conflict in coarse meshes.
+    // Collapse some points first, since links conflict in coarse meshes.
     w.rules.acceptance.worse_probability = 1;
     for (Index p : w.live_points()) {
       w.star(p);
@@ -98,7 +98,7 @@ TEST(LinkCondition, WhatPassesKeepsTheTopology) {
   // The condition is neither always true nor always false.
   EXPECT_GT(passed, 500);
   EXPECT_GT(refused_rightly, 20);
-  // It may refuse too much, since it is sufficient and not necessary, but rarely.
+  // It is sufficient but not necessary, so it may refuse too much, but only rarely.
   EXPECT_LT(refused - refused_rightly, refused / 2) << refused;
 }
 

@@ -96,7 +96,7 @@ TEST(SurfaceGrid, EditsOfOneBatchAreTestedAgainstEachOther) {
   EXPECT_TRUE(SurfaceGrid::apart(flat, none));
 }
 
-// A record that is given back is not written by another edit of the same batch.
+// A record that is given back is not reused by another edit of the same batch.
 TEST(SurfaceGrid, RecordsGivenBackAreFreeAfterTheBatch) {
   Workbench w(grid_mesh(4));
   const double s = w.mesh.space().scale();

@@ -15,7 +15,7 @@ namespace {
 
 using Tag = std::optional<MaterialTag>;
 
-/// The boundary of a mesh, wound outwards; input units.
+/// The boundary of a mesh, oriented outwards; input units.
 TriangleMesh boundary_of(const TetMesh& mesh) {
   TriangleMesh out;
   out.points = mesh.points;
@@ -40,7 +40,7 @@ std::uint32_t record_of(const Workbench& w, const MeshTriangle& t) {
   return edit.removed_records.front();
 }
 
-/// Number of samples that triangles own; expects each no farther from its triangle than stored.
+/// Number of samples that triangles own. Expects no sample farther from its triangle than stored.
 std::size_t count_owned(const Workbench& w) {
   std::size_t count = 0;
   double largest = 0;
@@ -158,7 +158,7 @@ TEST(SurfaceSamples, ThatWouldBeTooFarFromTheirTriangleRefuse) {
   EXPECT_EQ(w.carry_out(collapse(*w.ws, w.rules)), Outcome::done);
 }
 
-// The other direction: a triangle without samples must not leave the surface either.
+// The opposite direction: a triangle without samples must not leave the surface either.
 TEST(SurfaceSamples, ATriangleFarFromTheSurfaceIsRefused) {
   Workbench w(grid_mesh(4));
   const double scale = w.mesh.space().scale();

@@ -20,19 +20,19 @@ TEST(VolumeLedger, CommitsWithinItsBoundsAndBackTowardsThem) {
   EXPECT_EQ(ledger.utilization(), 0);
   const Changes large{{0, 0.06 * half}, {1, -0.06 * half}};
   EXPECT_TRUE(ledger.allows(large));
-  EXPECT_EQ(ledger.utilization(), 0);  // allows() books nothing
+  EXPECT_EQ(ledger.utilization(), 0);  // allows() records nothing
   ledger.commit(large);
   EXPECT_NEAR(ledger.utilization(), 0.6, 1e-12);
   EXPECT_FALSE(ledger.allows(Changes{{0, 0.05 * half}, {outside_id, -1}}));
   EXPECT_FALSE(
-      ledger.allows(Changes{{0, -0.01 * half}, {1, -0.05 * half}}));  // one violation of two is enough
+      ledger.allows(Changes{{0, -0.01 * half}, {1, -0.05 * half}}));  // one of two violations suffices
   EXPECT_FALSE(ledger.allows(large));
   EXPECT_NEAR(ledger.utilization(), 0.6, 1e-12);
   const Changes back{{0, -0.06 * half}, {1, 0.06 * half}};
   EXPECT_TRUE(ledger.allows(back));
   ledger.commit(back);
   EXPECT_NEAR(ledger.utilization(), 0, 1e-12);
-  // A volume already out of its bounds may return, but not go farther.
+  // A volume already outside its bounds may return, but not deviate more.
   ledger.commit(Changes{{0, 0.2 * half}});
   EXPECT_TRUE(ledger.allows(Changes{{0, -0.05 * half}}));
   EXPECT_FALSE(ledger.allows(Changes{{0, 0.001 * half}}));
@@ -40,8 +40,8 @@ TEST(VolumeLedger, CommitsWithinItsBoundsAndBackTowardsThem) {
   EXPECT_TRUE(open.allows(Changes{{0, 1e9}}));
 }
 
-// A protruding corner may be removed while there is volume to lose, and stays afterwards. An operation
-// refused for the count commits nothing.
+// A protruding corner may be removed while the volume bound permits, but not afterwards. An operation refused
+// because of the count commits nothing.
 TEST(VolumeLedger, HoldsCollapsesBack) {
   TetMesh mesh = grid_mesh(4);
   jitter(mesh, 1);

@@ -141,7 +141,7 @@ TEST(EditableMesh, WorksAtTheOriginWhereThatIsExact) {
   for (Vec3& p : moved.points) p += Vec3(0x1p40, -0x1p45, 3);
   EditableMesh here(TetMesh(mesh), "mesh"), there(TetMesh(moved), "mesh");
   for (Index p = 0; p < here.point_slots(); ++p) EXPECT_EQ(here.position(p), there.position(p));
-  // A position without exact input coordinates is rounded to one with them.
+  // A position without exact input coordinates is rounded to one that has them.
   const Vec3 off = there.position(5) + Vec3::Constant(1e-9);
   const Vec3 snapped = there.snap(off);
   EXPECT_EQ(there.space().to_working(there.space().to_input(snapped)), snapped);

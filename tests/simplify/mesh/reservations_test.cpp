@@ -115,7 +115,7 @@ TEST(WriteRule, ACommitWritesItsWriteSetAlone) {
   w.expect_sound();
 }
 
-// A proposal that writes outside its write set is caught.
+// A proposal that writes outside its write set is detected.
 TEST(WriteRule, ACommitOutsideItsWriteSetThrows) {
   Workbench w(grid_mesh(2));
   make_bad(w);

@@ -15,7 +15,7 @@ const std::array<std::string, vertex_kind_count> kind_names{"interior", "interfa
                                                             "corner", "frozen"};
 using Counts = std::array<std::array<int, vertex_kind_count>, vertex_kind_count>;
 
-// The last index is that of frozen vertices, the others are 3 minus the dimension.
+// The last index is for frozen vertices; the others are 3 minus the dimension.
 TEST(CollapseTable, AsksForTheRemovedVertexsDimension) {
   for (std::size_t from = 0; from < vertex_kind_count; ++from)
     for (std::size_t onto = 0; onto < vertex_kind_count; ++onto) {
@@ -30,7 +30,7 @@ TEST(CollapseTable, AsksForTheRemovedVertexsDimension) {
   EXPECT_EQ(collapsible_edge(VertexKind::frozen), never);
 }
 
-/// A block of three materials on a fourth, with a vertex in five frozen: has edges between all kinds.
+/// A block of three materials on a fourth, with one in five vertices frozen. It has edges between all kinds.
 Workbench block_of_all_kinds() {
   TetMesh mesh = grid_mesh({4, 4, 4}, [](int x, int y, int z) {
     return std::optional<MaterialTag>(z < 3 ? 1 : x < 2 ? 2 : y < 2 ? 3 : 4);

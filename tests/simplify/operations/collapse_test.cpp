@@ -22,7 +22,7 @@ TEST(Collapse, RemovesAnInnerPointAndItsEdgesTets) {
   w.expect_sound();
 }
 
-// Collapses all that may be collapsed, again and again: the mesh must stay sound throughout.
+// Collapses repeatedly while any collapse is possible. The mesh must stay valid throughout.
 void collapse_all(Workbench& w) {
   w.rules.acceptance.worse_probability = 1;
   bool any = true;
@@ -94,7 +94,7 @@ const Shape shapes[] = {
 
 class CollapseShapes : public testing::TestWithParam<Shape> {};
 
-// All possible collapses, however bad the shapes, keep the topology of every part.
+// All possible collapses, however bad the shapes, preserve the topology of every part.
 TEST_P(CollapseShapes, KeepTheirTopology) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     TetMesh mesh = grid_mesh(GetParam().size, GetParam().material);
@@ -174,7 +174,7 @@ TEST(Collapse, CornersStay) {
   w.expect_sound();
 }
 
-// A tet attached at one face: its apex collapses onto any of the three other points.
+// The apex of a tet attached at one face collapses onto any of the three other points.
 TEST(Collapse, AnEarIsCutOff) {
   TetMesh mesh;
   mesh.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}};

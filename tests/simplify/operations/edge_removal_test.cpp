@@ -25,7 +25,7 @@ Outcome remove_axis(Workbench& w, Index low, Index high, const FlipReach& reach)
   return Outcome::no_candidate;
 }
 
-// n tets around an inner edge become 2 (n - 2); the volume and the hull stay.
+// n tets around an interior edge become 2 (n - 2); the volume and the hull do not change.
 TEST(EdgeRemoval, EveryRingUpToSeven) {
   for (int n = 3; n <= 7; ++n) {
     Workbench w(ring_mesh(n, 1));
@@ -80,7 +80,7 @@ TEST(EdgeRemoval, FindsTheBestTriangulation) {
 }
 
 TEST(EdgeRemoval, TheBoundarysTwoToTwo) {
-  // A square pyramid cut along one diagonal of its base: flat, so that the volume stays.
+  // A square pyramid cut along one diagonal of its base, which is flat, so the volume does not change.
   TetMesh mesh;
   mesh.points = {{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {0.5, 0.5, 0.6}};
   mesh.tets = {{0, 1, 3, 4}, {0, 2, 1, 4}};
@@ -132,8 +132,8 @@ TEST(EdgeRemoval, JunctionEdgesStay) {
   w.expect_sound();
 }
 
-// A cavity of one tet: removing one of its edges would make the opposite edge, which exists, and fill the
-// cavity.
+// A cavity of one tet. Removing one of its edges would create the opposite edge, which exists already, and
+// fill the cavity.
 TEST(EdgeRemoval, AnEdgeThatIsThereElsewhereIsNotMadeAgain) {
   int refused = 0;
   for (std::uint64_t seed = 1; seed <= 60; ++seed) {

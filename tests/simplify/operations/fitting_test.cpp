@@ -7,7 +7,8 @@
 namespace tetwright::fitting_test {
 namespace {
 
-/// The boundary of a grid of four whose top is a roof of height 1/4 with its ridge along y = 2; input units.
+/// The boundary of a grid of 4 x 4 x 4 cubes whose top is a roof of height 1/4 with its ridge along y = 2;
+/// input units.
 TriangleMesh roofed() {
   TetMesh mesh = grid_mesh(4);
   TriangleMesh out;

@@ -76,7 +76,7 @@ TEST_P(Insertion, InEdgesOfEveryDimension) {
   EXPECT_GT(done[3], 0);
 }
 
-// In a good mesh another point is no improvement.
+// In a good mesh an additional point is no improvement.
 TEST(InsertionJudges, ByTheOutcome) {
   Workbench w(grid_mesh(2));
   w.rules.objective.kind = Objective::Kind::shape;

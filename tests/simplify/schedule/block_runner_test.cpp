@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Batches with conflicting proposals: who wins, who is decided again, and what a batch must not do.
-// tets_in_order() runs items in the order given, so that the test decides which are in one batch; an item's
-// number is that of a point here.
+// Batches with conflicting proposals: which proposals win, which are decided again, and what a batch must not
+// do. tets_in_order() runs items in the given order, so the test controls which are in one batch. Here an
+// item's number is that of a point.
 #include "simplify/schedule/block_runner.h"
 
 #include <gtest/gtest.h>
@@ -125,7 +125,7 @@ TEST(BlockRunner, OverlappingWriteSetsWinInOneBatch) {
   b.expect_sound();
 }
 
-/// Proposals of each point and tet of a mesh, by an operation that depends on its number.
+/// Proposals for each point and tet of a mesh, by an operation that depends on its number.
 std::vector<Proposal> proposals_of(Workbench& w) {
   std::vector<Proposal> out;
   Workspace& ws = *w.ws;
@@ -252,7 +252,7 @@ TEST(BlockRunner, BoundsHoldForABatchAsAWhole) {
   EXPECT_GT(b.runner.take_totals().counts.of(Operation::collapse, Outcome::count), 0u);
   b.expect_sound();
 
-  // Points far from each other that do not move, but report a loss of a third of the allowed volume.
+  // Distant points that do not move but report a loss of a third of the allowed volume.
   Block v(grid_mesh(6), 1000);
   v.ledger.open(v.mesh, 0.1);
   const double third = v.mesh.total_volume() * 0.1 / 3.1;
@@ -308,10 +308,11 @@ TEST(BlockRunner, ATurnGoesOnWithTheNextStage) {
   b.expect_sound();
 }
 
-// The first item waits until another worker decides one, too: other tests of threads would pass with one.
+// The first item waits until another worker decides one as well. Other tests of threads would pass with a
+// single worker.
 TEST(BlockRunner, WorkersDecideSideBySide) {
   const ThreadLimit four(4);
-  // oneTBB guarantees no second thread in any single loop, whatever is free.
+  // oneTBB does not guarantee a second thread in any single loop, even if threads are free.
   constexpr int max_loops = 30;
   std::int64_t workers = 0;
   for (int loop = 0; loop < max_loops && workers < 2; ++loop) {

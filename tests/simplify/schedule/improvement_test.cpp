@@ -60,7 +60,7 @@ TEST(Improve, OpensLoopsOfJunctionCurvesThatAreSmallerThanATet) {
   EXPECT_TRUE(check_mesh(after).empty());
   for (const std::string& d : topology_differences(topology(mesh), topology(after))) ADD_FAILURE() << d;
   const MeshStatistics is = mesh_statistics(after);
-  EXPECT_GT(is.min_dihedral, 8);  // 1 if they are not improved
+  EXPECT_GT(is.min_dihedral, 8);  // would be 1 without improvement
   EXPECT_GT(is.min_solid_angle, 0.03);
   EXPECT_EQ(interface_groups(find_interfaces(after)).size(), 6u);  // 1|2 is still among them
 }
@@ -136,7 +136,8 @@ TEST(Improve, RefusesAndCancels) {
   EXPECT_THROW(improve(grid_mesh(3), ImproveOptions(), nullptr, &progress), Interrupted);
 }
 
-// A coarse skin filled with random points, as by other programs: half of the tets are slivers.
+// A coarse surface mesh filled with random points, as produced by other programs. Half of the tets are
+// slivers.
 TEST(Improvement, MendsMeshesWithRandomInteriors) {
   const TetMesh mesh = random_interior(3, 170, 0.25);
   EXPECT_GT(mesh_statistics(mesh, 0.1).below_percent, 35);

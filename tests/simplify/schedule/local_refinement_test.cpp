@@ -16,7 +16,7 @@
 namespace tetwright {
 namespace {
 
-/// A cube of side 4 whose top has a hill, in triangles finer than the faces of grid_mesh(4).
+/// A cube of side 4 whose top has a hill, with triangles finer than the faces of grid_mesh(4).
 TriangleMesh cube_with_hill(const Vec3& place, double height, double width) {
   constexpr Index n = 160;
   TriangleMesh s;

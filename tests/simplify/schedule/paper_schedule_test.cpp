@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <optional>
+#include <string>
+
 #include "tests/simplify/meshes.h"
 #include "tetwright/mesh_quality.h"
 #include "tetwright/resources.h"
@@ -30,6 +37,16 @@ TEST(PaperSchedule, ReachesTheTargetByFigure3) {
   for (std::size_t i = 0; i < report.iterations.size(); ++i) {
     const IterationReport& it = report.iterations[i];
     EXPECT_EQ(it.kind, "simplify");
+    EXPECT_EQ(std::accumulate(it.tets_by_quality.begin(), it.tets_by_quality.end(), std::size_t{0}),
+              it.tets_before);
+    // The cutoff is Quality(t) of the tet at that percentage, which is therefore in the cutoff's bin.
+    const auto bins = it.tets_by_quality.size();
+    const auto own = std::min(bins - 1, static_cast<std::size_t>(it.cutoff * static_cast<double>(bins)));
+    const auto worse = std::accumulate(it.tets_by_quality.begin(),
+                                       it.tets_by_quality.begin() + static_cast<std::ptrdiff_t>(own), 0.0);
+    const double chosen = it.percent / 100 * static_cast<double>(it.tets_before);
+    EXPECT_LE(worse, chosen + 1);
+    EXPECT_GE(worse + static_cast<double>(it.tets_by_quality[own]), chosen - 1);
     EXPECT_EQ(it.percent, std::min(100.0, 10.0 * static_cast<double>(i + 1)));
     if (i == 0) continue;
     const IterationReport& last = report.iterations[i - 1];

@@ -46,7 +46,8 @@ TetMesh read_checked(Input input, CommandRun& run, bool& field_found) {
 CheckReport examine(TetMesh& mesh, CommandRun& run) {
   CheckReport check;
   check.findings = check_mesh(mesh);
-  for (const MeshFinding& f : check.findings) check.measurable &= f.fault > MeshFault::coordinates_not_finite;
+  for (const MeshFinding& f : check.findings)
+    check.measurable &= f.code > DiagnosticCode::coordinates_not_finite;
   if (!check.measurable) return check;
   mesh.interfaces = find_interfaces(mesh);
   run.report.result = mesh_statistics(mesh, run.line.options.shapes.bound());
@@ -101,7 +102,7 @@ const char* verdict(const CheckReport& check) {
 
 void print_check(const CheckReport& check, const CommandRun& run) {
   for (const MeshFinding& f : check.findings)
-    std::printf("%s: %s\n", is_warning(f.fault) ? "warning" : "error", mesh_finding_line(f).c_str());
+    std::printf("%s: %s\n", name_of(kind_of(f.code).severity), mesh_finding_line(f).c_str());
   if (check.measurable) {
     print_report(run.line, run.report);
     for (const std::string& l : topology_lines(*check.topology)) std::printf("%s\n", l.c_str());
@@ -117,7 +118,7 @@ void print_check(const CheckReport& check, const CommandRun& run) {
 /// Prints errors and shortfalls to stderr; this is the only output with --quiet.
 void print_shortfalls(const CheckReport& check) {
   for (const MeshFinding& f : check.findings)
-    if (!is_warning(f.fault)) print_line(mesh_finding_line(f));
+    if (kind_of(f.code).severity == Severity::error) print_line(mesh_finding_line(f));
   if (check.topology_differences)
     for (const std::string& d : *check.topology_differences) print_line("topology differs: " + d);
   if (!check.within_tolerance()) print_line(tolerance_line(*check.surface, check.tolerance));

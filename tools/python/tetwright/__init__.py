@@ -19,14 +19,14 @@ that are left out.
 
 A call that fails raises a subclass of `tetwright.Error` with the program's message. A request that is not met causes
 a `ShortfallWarning` and is listed in `TetMesh.shortfall`; `TetMesh.diagnostics` has the codes of all notes and
-shortfalls. Calls release the interpreter's lock, and Ctrl-C cancels them. Several calls may run at the same time,
-each with its own `threads`.
+shortfalls, `diagnostic_kinds()` their causes and remedies. Calls release the interpreter's lock, and Ctrl-C cancels
+them. Several calls may run at the same time, each with its own `threads`.
 """
 from ._commands import check, improve, mesh, prepare, read, simplify
 from ._core import (Error, InputError, InternalError, NothingToMeshError, OutputError, UsageError,
                     version as __version__)
-from ._mesh import CheckResult, Diagnostic, Interfaces, ShortfallWarning, TetMesh
+from ._mesh import CheckResult, Diagnostic, DiagnosticKind, Interfaces, ShortfallWarning, TetMesh, diagnostic_kinds
 
 __all__ = ["prepare", "mesh", "simplify", "improve", "check", "read", "TetMesh", "Interfaces", "CheckResult", "Diagnostic",
-           "ShortfallWarning", "Error", "UsageError", "InputError", "NothingToMeshError", "OutputError",
+           "DiagnosticKind", "diagnostic_kinds", "ShortfallWarning", "Error", "UsageError", "InputError", "NothingToMeshError", "OutputError",
            "InternalError", "__version__"]

@@ -17,7 +17,7 @@ class ShortfallWarning(UserWarning):
 
 
 class Diagnostic(NamedTuple):
-    """Information about an input or a result; data/guide/messages.md lists the codes with causes and remedies."""
+    """Information about an input or a result; diagnostic_kinds() has causes and remedies by code."""
     code: str  # the same in all versions
     severity: str  # "note" or "shortfall"
     message: str
@@ -26,6 +26,22 @@ class Diagnostic(NamedTuple):
     asked: Optional[float]
     reached: Optional[float]
     limited_by: Optional[str]
+
+
+class DiagnosticKind(NamedTuple):
+    """Description of a code."""
+    severity: str  # "note", "shortfall", "warning" or "error"
+    acceptable: bool  # accept_changes=True makes the shortfall a note
+    certain: bool  # False: the result differs from an estimate; strict=True does not count the note
+    title: str  # a few words
+    message: str  # pattern of the line, with N, D and NAME for values; "" for errors
+    cause: str
+    remedy: str
+
+
+def diagnostic_kinds() -> dict[str, DiagnosticKind]:
+    """All codes that Diagnostic.code may have, and those of errors, in the order of the guide."""
+    return {name: DiagnosticKind(*kind) for name, *kind in _core.diagnostic_kinds()}
 
 
 class Interfaces:

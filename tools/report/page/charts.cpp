@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <tuple>
 #include <vector>
 
 #include "tools/report/page/html_text.h"
@@ -222,6 +224,59 @@ std::string dihedral_chart(std::span<const ChartMesh> meshes) {
   for (int degrees = 0; degrees <= all_degrees; degrees += tick_degrees)
     ticks.push_back({degrees / static_cast<double>(all_degrees), std::to_string(degrees)});
   return bar_chart(bars, "dihedral angle, degrees", ticks, "angles");
+}
+
+std::string iterations_chart(std::span<const IterationReport> iterations) {
+  std::vector<const IterationReport*> shown;
+  std::size_t most = 0;
+  for (const IterationReport& it : iterations)
+    if (it.kind == "simplify") {
+      shown.push_back(&it);
+      most = std::max(most, it.tets_before);
+    }
+  if (most == 0) return "";
+  const Plot plot{420, 150};
+  const auto count = static_cast<double>(shown.size());
+  constexpr double bar_width = 0.8;  // of the distance between bars
+  constexpr std::size_t bins = std::tuple_size_v<decltype(IterationReport::tets_by_quality)>;
+  static_assert(bins < shades);
+  std::array<std::string, bins> paths;
+  std::string chosen;  // the lower end of the tets that an iteration works on
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const double x = plot.x((static_cast<double>(i) + (1 - bar_width) / 2) / count),
+                 width = bar_width * (plot.x(1) - plot.x(0)) / count;
+    std::size_t top = shown[i]->tets_before;
+    const auto y_of = [&](double tets) { return plot.y(tets / static_cast<double>(most)); };
+    for (std::size_t b = 0; b < bins; ++b) {
+      const std::size_t tets = shown[i]->tets_by_quality[b];
+      const double from = y_of(static_cast<double>(top)), to = y_of(static_cast<double>(top - tets));
+      top -= tets;
+      if (length(to) == length(from)) continue;
+      paths[b] += "M" + length(x) + " " + length(from) + "H" + length(x + width) + "V" + length(to) + "H" +
+                  length(x) + "z";
+    }
+    const double not_chosen = 1 - std::min(100.0, shown[i]->percent) / 100;
+    chosen += "M" + length(x) + " " + length(y_of(not_chosen * static_cast<double>(shown[i]->tets_before))) +
+              "H" + length(x + width);
+  }
+  std::string out = "<figure>" + plot.begin("Tets at the beginning of each iteration, the worst at the top");
+  out += y_axis(plot, {{0, "0"}, {0.5, grouped_number(most / 2)}, {1, grouped_number(most)}}, "tets");
+  const auto tick = [&](std::size_t i) {
+    return Tick{(static_cast<double>(i) - 0.5) / count, std::to_string(i)};
+  };
+  std::vector<Tick> ticks{tick(1)};
+  if (shown.size() > 2) ticks.push_back(tick((shown.size() + 1) / 2));
+  if (shown.size() > 1) ticks.push_back(tick(shown.size()));
+  // The worst tets have the darkest shade.
+  const auto shade = [&](std::size_t b) { return "shade" + std::to_string(shades - static_cast<int>(b)); };
+  for (std::size_t b = 0; b < bins; ++b)
+    if (!paths[b].empty()) out += "<path class=\"" + shade(b) + "\" d=\"" + paths[b] + "\"/>";
+  out += "<path class=\"outline\" d=\"" + chosen + "\"/>";
+  out += x_axis(plot, ticks, "iteration") + "</svg><figcaption>Tets before each iteration, from the worst ";
+  for (std::size_t b = 0; b < bins; ++b) out += "<span class=\"swatch " + shade(b) + "\"></span>";
+  return out +
+         " to the best; <span class=\"swatch outline\"></span> those above it are worked "
+         "on</figcaption></figure>";
 }
 
 }  // namespace tetwright

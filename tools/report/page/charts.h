@@ -5,6 +5,7 @@
 #include <string>
 
 #include "tetwright/mesh_quality.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright {
 
@@ -23,5 +24,9 @@ std::string quality_charts(std::span<const ChartMesh> meshes);
 std::string solid_angle_chart(std::span<const ChartMesh> meshes);
 /// Histogram of the dihedral angles, all meshes in one drawing.
 std::string dihedral_chart(std::span<const ChartMesh> meshes);
+
+/// A bar for each iteration of simplification, as high as its tets before the iteration, the worst at the
+/// top: Figure 4 of Cutler, Dorsey & McMillan 2004. Empty if there are no such iterations.
+std::string iterations_chart(std::span<const IterationReport> iterations);
 
 }  // namespace tetwright

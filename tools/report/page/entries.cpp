@@ -20,7 +20,7 @@ constexpr double no_value = std::numeric_limits<double>::infinity();
 PageEntry entry_of(const Diagnostic& d) {
   std::string text = d.count > 0 ? std::to_string(d.count) + " " + d.what : d.what;
   if (d.severity == Severity::note && !d.file.empty()) text.insert(0, d.file + ": ");
-  return {std::move(text), d.done.empty() ? d.remedy : d.done, d.places, kind_of(d.code).name};
+  return {std::move(text), d.done.empty() ? d.remedy : d.done, d.places, &kind_of(d.code)};
 }
 
 void add(const std::vector<Diagnostic>& diagnostics, PageEntries& entries) {
@@ -68,13 +68,11 @@ void add_worst(const TetMesh& mesh, PageEntries& entries) {
   constexpr int angle_decimals = 4;
   entries.worst.push_back({"The smallest solid angle, " + fixed_number(solid, angle_decimals) + " sr",
                            "",
-                           {centre(mesh, of_solid)},
-                           ""});
+                           {centre(mesh, of_solid)}});
   if (std::isfinite(largest))
     entries.worst.push_back({"The largest dihedral angle, " + fixed_number(-largest, 1) + " degrees",
                              "",
-                             {centre(mesh, of_largest)},
-                             ""});
+                             {centre(mesh, of_largest)}});
 }
 
 }  // namespace

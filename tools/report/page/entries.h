@@ -12,10 +12,10 @@ namespace tetwright {
 
 /// An entry of a list on the page, shown in the mesh if it has locations.
 struct PageEntry {
-  std::string text;          ///< what it is
-  std::string detail;        ///< what was done about it, or a remedy; may be empty
-  std::vector<Vec3> places;  ///< input units
-  std::string code;          ///< of the diagnostic; empty: it is none
+  std::string text;                      ///< what it is
+  std::string detail;                    ///< what was done about it, or a remedy; may be empty
+  std::vector<Vec3> places;              ///< input units
+  const DiagnosticKind* kind = nullptr;  ///< null: no diagnostic
 };
 
 struct PageEntries {

@@ -151,22 +151,24 @@ std::string report_page(const CommandLine& line, const PrepareReport& run, const
   const PageMesh page = page_mesh(mesh, distances, limits);
   const PageEntries entries = page_entries(run, mesh, check);
   const std::vector<ChartMesh> meshes = chart_meshes(line, run);
-  return filled_in(embedded::page_html,
-                   {{"title", html_text(title_of(line, run))},
-                    {"call", html_text("tetwright" + line.arguments)},
-                    {"version", TETWRIGHT_VERSION},
-                    {"not_shown", not_shown(page, mesh)},
-                    {"lists", lists(entries)},
-                    {"figures", meshes.empty() ? "" : figures_table(meshes, line.options.shapes.bound())},
-                    {"materials", run.result ? materials_table(run) : ""},
-                    {"quality", quality_charts(meshes)},
-                    {"angles", solid_angle_chart(meshes) + dihedral_chart(meshes)},
-                    {"style", std::string(embedded::page_css)},
-                    {"three", std::string(embedded::three_js)},
-                    {"scripts", std::string(embedded::mesh_js) + std::string(embedded::view_js) +
-                                    std::string(embedded::page_js)},
-                    {"description", description(page, run, entries)},
-                    {"arrays", arrays(page)}});
+  return filled_in(
+      embedded::page_html,
+      {{"title", html_text(title_of(line, run))},
+       {"call", html_text("tetwright" + line.arguments)},
+       {"version", TETWRIGHT_VERSION},
+       {"not_shown", not_shown(page, mesh)},
+       {"lists", lists(entries)},
+       {"figures", meshes.empty() ? "" : figures_table(meshes, line.options.shapes.bound())},
+       {"materials", run.result ? materials_table(run) : ""},
+       {"quality", quality_charts(meshes)},
+       {"angles", solid_angle_chart(meshes) + dihedral_chart(meshes)},
+       {"iterations", run.simplify ? section("Iterations", iterations_chart(run.simplify->iterations)) : ""},
+       {"style", std::string(embedded::page_css)},
+       {"three", std::string(embedded::three_js)},
+       {"scripts",
+        std::string(embedded::mesh_js) + std::string(embedded::view_js) + std::string(embedded::page_js)},
+       {"description", description(page, run, entries)},
+       {"arrays", arrays(page)}});
 }
 
 }  // namespace tetwright

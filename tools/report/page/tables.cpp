@@ -44,6 +44,13 @@ std::string mark_button(std::size_t number, const Vec3& place) {
          place_text(place) + "\">" + n + "</button>";
 }
 
+/// Cause and remedy, as the guide has them, without its marks for code.
+std::string explanation(const DiagnosticKind& kind) {
+  std::string text = std::string(kind.cause) + " " + kind.remedy;
+  std::erase(text, '`');
+  return text;
+}
+
 }  // namespace
 
 std::string figures_table(std::span<const ChartMesh> meshes, double threshold) {
@@ -76,7 +83,9 @@ std::string entries_list(const std::vector<PageEntry>& entries, std::size_t& fir
   std::string out = "<ul class=\"entries\">";
   for (const PageEntry& entry : entries) {
     out += "<li>" + html_text(entry.text);
-    if (!entry.code.empty()) out += " <code>" + html_text(entry.code) + "</code>";
+    if (entry.kind)
+      out += " <code title=\"" + html_text(explanation(*entry.kind)) + "\">" + html_text(entry.kind->name) +
+             "</code>";
     if (!entry.detail.empty()) out += " <span class=\"detail\">" + html_text(entry.detail) + "</span>";
     for (const Vec3& place : entry.places) out += mark_button(first_mark++, place);
     out += "</li>";

@@ -218,9 +218,9 @@ TEST(Vtu, OtherVolumeCellsAreRefusedByKindAndNumber) {
     };
     expect_input_error(read_vtu, with_first(12), "1 hexahedra, the first of them cell 0",
                        "convert them to tets");
-    expect_input_error(read_vtu, with_first(13), "byte", "1 wedges");
+    expect_input_error(read_vtu, with_first(13), "byte", "1 prisms");
     expect_input_error(read_vtu, with_first(24), "cell 0 is a tet of", "damaged");
-    expect_input_error(read_vtu, with_first(26), "1 quadratic wedges", "Tetrahedralize");
+    expect_input_error(read_vtu, with_first(26), "1 quadratic prisms", "Tetrahedralize");
     expect_input_error(read_vtu, with_first(200), "1 cells of the unknown type 200");
   }
 }

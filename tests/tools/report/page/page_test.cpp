@@ -12,6 +12,7 @@
 #include "common/samples/samples.h"
 #include "tests/tools/program.h"
 #include "tetwright/mesh_quality.h"
+#include "tools/report/page/charts.h"
 #include "tools/report/page/html_text.h"
 #include "tools/report/page/page.h"
 #include "tools/report/page/skin.h"
@@ -113,6 +114,36 @@ TEST(ReportPage, NamesOfTheUserAreNoMarkup) {
   EXPECT_EQ(page.find("<script>x()"), std::string::npos);
   EXPECT_EQ(page.find("<img"), std::string::npos);
   EXPECT_NE(page.find("&lt;img"), std::string::npos);
+  // The code of a diagnostic explains itself.
+  EXPECT_NE(page.find("<code title=\"The file repeats points, as STL does for each triangle. None needed.\">"
+                      "points-merged</code>"),
+            std::string::npos);
+}
+
+TEST(ReportPage, DrawsABarForEachIteration) {
+  EXPECT_EQ(iterations_chart({}), "");
+  IterationReport close;
+  close.kind = "close";
+  close.tets_before = 7;
+  EXPECT_EQ(iterations_chart({&close, 1}), "");
+  std::vector<IterationReport> iterations(2);
+  for (IterationReport& it : iterations) it.kind = "simplify";
+  iterations[0].tets_before = 1000;
+  iterations[0].tets_by_quality = {100, 0, 900};
+  iterations[0].percent = 10;
+  iterations[1].tets_before = 250;
+  iterations[1].tets_by_quality = {0, 0, 250};
+  iterations[1].percent = 20;
+  iterations.push_back(close);
+  const std::string chart = iterations_chart(iterations);
+  // The plot is 150 high, from 10 at the top to 160. The worst 100 of 1,000 tets fill its topmost 15, the
+  // others 135; the 250 of the second iteration fill the lowest 37.5.
+  EXPECT_NE(chart.find("<path class=\"shade9\" d=\"M67 10H235V25H67z\"/>"), std::string::npos) << chart;
+  EXPECT_NE(chart.find("<path class=\"shade7\" d=\"M67 25H235V160H67zM277 122.5H445V160H277z\"/>"),
+            std::string::npos)
+      << chart;
+  // The worst 10 % and 20 % are worked on.
+  EXPECT_NE(chart.find("<path class=\"outline\" d=\"M67 25H235M277 130H445\"/>"), std::string::npos) << chart;
 }
 
 TEST(ReportPage, NumbersDoNotDependOnTheLocale) {

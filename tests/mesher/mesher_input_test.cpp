@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace tetwright::regions_test {
+namespace tetwright::mesher_input_test {
 namespace {
 
 TEST(RegionSet, IsSortedAndHoldsFour) {
@@ -19,4 +19,4 @@ TEST(RegionSet, IsSortedAndHoldsFour) {
 }
 
 }  // namespace
-}  // namespace tetwright::regions_test
+}  // namespace tetwright::mesher_input_test
