@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What tools/bench --ci and --compare do; benchmarks/README.md says how to read it.
+"""Implements tools/bench --ci and --compare; benchmarks/README.md explains the results.
 
-Each benchmark runs in a process of its own, so that its peak of memory is its own.
+Each benchmark runs in a separate process, so that its peak memory is measured alone.
 
 When is HEAD worse than BASE? For each benchmark both are run in turn, ROUNDS times.
   time     the median of the ratios (head / base, round by round) is above 1.10, and head's median is above every
@@ -10,7 +10,7 @@ When is HEAD worse than BASE? For each benchmark both are run in turn, ROUNDS ti
   memory   the ratio of the medians is above 1.05, and head's median is above every peak of base's
   poor     head's median of the percentage of tets under 0.1 sr is above base's by 0.05 points and by a tenth of it,
            and above every one of base's
-All else is noise, or better. A benchmark that only one of the two has is listed.
+Anything else is noise or an improvement. A benchmark that only one of the two has is listed.
 """
 import argparse
 import json
@@ -50,7 +50,7 @@ def git(*arguments):
 
 
 def build(folder):
-    """Builds the suite of a checkout; its program, or None where that checkout has no suite."""
+    """Builds the suite of a checkout; returns its program, or None if that checkout has no suite."""
     if not os.path.exists(os.path.join(folder, SOURCE)):
         return None
     os.makedirs(os.path.join(folder, "build"), exist_ok=True)
@@ -71,7 +71,7 @@ def names_in(program, wanted):
 
 
 def run_once(program, name):
-    """{metric: value} of one run; seconds, MB, percent."""
+    """Returns {metric: value} of one run, in seconds, MB and percent."""
     text = output_of([program, "--benchmark_filter=^%s$" % re.escape(name), "--benchmark_format=json",
                       "--benchmark_min_time=0.3"], stderr=subprocess.DEVNULL)
     result = json.loads(text)["benchmarks"][0]
@@ -104,13 +104,13 @@ def in_unit(metric, value):
 
 
 def spread(values):
-    """Half of what lies between the smallest and the largest, as a share of the median."""
+    """Returns half of the difference between the largest and the smallest value, relative to the median."""
     middle = statistics.median(values)
     return (max(values) - min(values)) / 2 / middle if middle else 0.0
 
 
 def verdict(metric, base, head):
-    """'WORSE', 'better' or '': the rule that stands above."""
+    """Returns 'WORSE', 'better' or '' by the rule above."""
     b, h = statistics.median(base), statistics.median(head)
 
     def worse(base, head, b, h):
@@ -177,7 +177,7 @@ def ci(options):
 
 
 def checkout(side, commit):
-    """A worktree under build/ that stands at a commit; kept, so that the next comparison builds less."""
+    """Returns a worktree of a commit under build/; it is kept, so that the next comparison builds less."""
     folder = os.path.join(ROOT, "build", "bench", side)
     if os.path.exists(os.path.join(folder, ".git")):
         git("-C", folder, "checkout", "--quiet", "--force", "--detach", commit)

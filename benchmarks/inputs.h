@@ -13,7 +13,7 @@
 
 namespace tetwright {
 
-/// The Stanford bunny of Debian's glmark2-data if that is installed, else the built-in knot.
+/// The Stanford bunny of Debian's glmark2-data if that is installed, otherwise the built-in knot.
 inline MesherInput benchmark_input() {
   const std::string bunny = "/usr/share/glmark2/models/bunny.obj";
   MaterialSurface s{"body", 1, {}, "knot"};
@@ -26,7 +26,7 @@ inline MesherInput benchmark_input() {
   return make_mesher_input({s});
 }
 
-/// The dense mesh of benchmark_input(), made once for each resolution.
+/// The dense mesh of benchmark_input(), created once for each resolution.
 inline const TetMesh& benchmark_mesh(int resolution) {
   static std::map<int, TetMesh> meshes;
   const auto known = meshes.find(resolution);

@@ -96,7 +96,7 @@ ProgramRun run_program(const std::vector<std::string>& arguments) {
   ProgramRun run;
   run.seconds = watch.seconds();
   run.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  run.peak_bytes = static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux counts in KiB
+  run.peak_bytes = static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux reports KiB
   return run;
 }
 

@@ -10,9 +10,9 @@
 
 namespace tetwright {
 
-/// Runs `work` in a forked child process, so that its memory is its own and is released in the end.
+/// Runs `work` in a forked child process, so that its memory is measured alone and is released at the end.
 ///
-/// \return the result of `work`; {"error": "..."} if it threw or died.
+/// \return the result of `work`; {"error": "..."} if it threw an exception or died.
 /// \pre This process has a single thread.
 nlohmann::json in_child(const std::function<nlohmann::json()>& work);
 
@@ -22,7 +22,7 @@ struct ProgramRun {
   std::size_t peak_bytes = 0;  ///< peak resident size
 };
 
-/// Runs a program to its end; its standard output is dropped.
+/// Runs a program to its end and discards its standard output.
 ProgramRun run_program(const std::vector<std::string>& arguments);
 
 /// Peak resident size of this process since its start or reset_peak() (VmHWM).
@@ -42,7 +42,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Processor time of the calling thread: waiting on a busy machine does not count.
+/// Processor time of the calling thread: waiting on a busy machine is not counted.
 class ThreadStopwatch {
  public:
   double seconds() const { return now() - start_; }
@@ -52,7 +52,7 @@ class ThreadStopwatch {
   double start_ = now();
 };
 
-/// A folder in the system's temporary folder, removed with its contents.
+/// A folder in the system's temporary folder; removed with its contents on destruction.
 class ScratchFolder {
  public:
   ScratchFolder();

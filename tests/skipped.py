@@ -9,13 +9,13 @@ import xml.etree.ElementTree
 
 
 def skipped_tests(results):
-    """Names of the tests that did not run."""
+    """Returns the names of the tests that did not run."""
     cases = xml.etree.ElementTree.parse(results).getroot().iter("testcase")
     return [case.get("name") for case in cases if case.get("status") == "notrun" or case.find("skipped") is not None]
 
 
 def optional_packages(file):
-    """For each test that may be skipped its package and the checks lost without it."""
+    """Returns for each test that may be skipped its package and the checks lost without it."""
     lines = [line.split(maxsplit=2) for line in open(file, encoding="utf-8") if line.strip() and not line.startswith("#")]
     return {test: (package, text.strip()) for package, test, text in lines}
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tests skipped.py on results of CTest: permitted and forbidden skips."""
+"""Tests skipped.py with results of CTest: permitted and forbidden skips."""
 import pathlib
 import subprocess
 import sys

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Benchmarks of every hot stage on inputs made here, measured by tools/bench --ci and compared by --compare.
-// benchmarks/bench.py reads the counters: peak_MB, poor_% (tets under 0.1 sr) and those that end in _s,
-// seconds of a stage.
+// Benchmarks of every expensive stage on generated inputs, measured by tools/bench --ci and compared by
+// --compare. benchmarks/bench.py reads the counters: peak_MB, poor_% (tets below 0.1 sr) and those that end
+// in _s, the seconds of a stage.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -44,7 +44,7 @@ TetMesh dense_mesh(const MesherInput& input, int resolution, bool uniform) {
   return mesh_surfaces(input, options, nullptr).mesh;
 }
 
-/// Input meshes: some 300,000 and 100,000 tets, made once in a process.
+/// Input meshes of about 300,000 and 100,000 tets, created once in each process.
 const TetMesh& knot_mesh() {
   static const TetMesh mesh = dense_mesh(input_of("knot"), 90, false);
   return mesh;
@@ -90,7 +90,7 @@ void repeatedly(benchmark::State& state, const Work& work) {
 #define TETWRIGHT_CI(function, name) \
   BENCHMARK(function)->Name(name)->Unit(benchmark::kMillisecond)->UseRealTime()
 
-/// Times `mesh()`, which makes a DenseMesh.
+/// Times `mesh()`, which returns a DenseMesh.
 template <class Mesh>
 void run_mesher(benchmark::State& state, const Mesh& mesh) {
   DenseMesh meshed;
@@ -257,7 +257,7 @@ void improve_again(benchmark::State& state) {
     const ThreadLimit one(1);
     SimplifyOptions options;
     options.target_tets = knot_mesh().tets.size() / 15;
-    options.schedule = Schedule::paper;  // leaves bad tets
+    options.schedule = Schedule::paper;  // this schedule leaves bad tets
     return simplify(knot_mesh(), options);
   }();
   const ThreadLimit one(1);

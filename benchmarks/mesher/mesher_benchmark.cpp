@@ -10,7 +10,7 @@
 namespace tetwright {
 namespace {
 
-/// Times repeated meshing; reports the seconds of each stage as counters.
+/// Times repeated meshing; counters report the seconds of each stage.
 void run(benchmark::State& state, const MesherInput& input, bool uniform) {
   MesherOptions options;
   options.resolution = static_cast<int>(state.range(0));
@@ -30,11 +30,11 @@ void run(benchmark::State& state, const MesherInput& input, bool uniform) {
   state.counters["cut_s"] = r.seconds_cut;
   state.counters["tets/s_without_sdf"] =
       tets / (r.seconds_octree + r.seconds_lattice + r.seconds_move + r.seconds_cut);
-  // Peak of the whole process so far: meaningful only with a filter that leaves one case.
+  // Peak of the whole process so far: meaningful only if a filter selects a single case.
   state.counters["peak_MB"] = static_cast<double>(usage.ru_maxrss) / 1e3;
 }
 
-/// Doubling the cells should take about four times the time and memory.
+/// Doubling the resolution should take about four times the time and memory.
 void adaptive(benchmark::State& state) { run(state, benchmark_input(), false); }
 BENCHMARK(adaptive)
     ->Name("mesh_surfaces/adaptive")

@@ -12,7 +12,7 @@
 namespace tetwright {
 namespace {
 
-/// About 200,000 triangles between meridians and parallels; bumps of a tenth of the radius.
+/// A sphere of about 200,000 triangles between meridians and parallels, with bumps of a tenth of the radius.
 TriangleMesh bumpy_sphere() {
   constexpr int around = 317, rows = 317;
   TriangleMesh mesh;
@@ -32,7 +32,7 @@ TriangleMesh bumpy_sphere() {
   return mesh;
 }
 
-/// Points at most `reach` from a point of the surface along each axis.
+/// Random points, each within `reach` of a point of the surface along each axis.
 std::vector<Vec3> queries(const TriangleMesh& mesh, double reach) {
   Random random(1);
   std::vector<Vec3> points(1 << 16);
@@ -43,7 +43,7 @@ std::vector<Vec3> queries(const TriangleMesh& mesh, double reach) {
   return points;
 }
 
-/// One thread. The reach is in thousandths of the sphere's radius.
+/// Uses one thread. The reach is in thousandths of the sphere's radius.
 void winding_numbers(benchmark::State& state) {
   const TriangleMesh mesh = bumpy_sphere();
   const SurfaceTree tree(mesh.points, mesh.triangles);

@@ -8,8 +8,8 @@
 
 namespace tetwright {
 
-/// n x n x n unit cubes of six tets each (Kuhn 1960), one material on each side of the plane x = n / 2.
-/// Points move by up to `amount` along each axis, but never off the boundary or the plane.
+/// n x n x n unit cubes of six tets each (Kuhn 1960), with a material on each side of the plane x = n / 2.
+/// Points move by up to `amount` along each axis, but not off the boundary or the plane.
 inline TetMesh jittered_lattice(int n, double amount, std::uint64_t seed) {
   TetMesh mesh;
   const auto number = [n](int x, int y, int z) {
@@ -31,7 +31,7 @@ inline TetMesh jittered_lattice(int n, double amount, std::uint64_t seed) {
         }
         mesh.points.push_back(p);
       }
-  // Orders of the axes on a path from a cube's first corner to its last; odd ones have the opposite
+  // Orders of the axes along paths from a cube's first corner to its last; odd permutations have the opposite
   // orientation.
   constexpr int ways[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
   for (int z = 0; z < n; ++z)

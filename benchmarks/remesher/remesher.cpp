@@ -17,16 +17,16 @@
 namespace tetwright {
 namespace {
 
-/// Max displacements, in cubes: of the lattice's points, and of a region's points by the simulation before
-/// improve(). The second inverts some tets.
+/// Maximum displacements, in cube edges: of the lattice's points, and of a region's points by the simulated
+/// motion before improve(). The second inverts some tets.
 constexpr double lattice_jitter = 0.1, simulated_motion = 0.22;
-/// Points nearer than this to boundary or interface keep their distance from it: a simulation leaves surfaces
-/// smooth.
+/// Points closer than this to the boundary or the interface keep their distance from it, since a simulation
+/// leaves surfaces smooth.
 constexpr double surface_share = 0.3;
-/// Edges of the lattice are 1, 1.41 and 1.73 long: coarsening to the first size collapses the short ones,
-/// refining to the second halves the longest.
+/// The lattice has edges of length 1, 1.41 and 1.73: coarsening to the first size collapses the shorter
+/// kinds, refining to the second splits the longest.
 constexpr double coarse_size = 2, fine_size = 1.2;
-/// Cubes between the regions of a series of calls.
+/// Number of cubes between the regions of a series of calls.
 constexpr int gap = 4;
 /// Three kinds of calls on two kinds of regions.
 constexpr std::size_t series_of_a_size = 6;
@@ -51,7 +51,7 @@ struct Place {
   Box3 box;
 };
 
-/// A lattice and the operations on it.
+/// A lattice with a Remesher and the operations on it.
 class Subject {
  public:
   Subject(double tets, const Options& o)
@@ -62,7 +62,7 @@ class Subject {
     if (o.fields) add_fields();
   }
 
-  /// Replaces the Remesher by a new one of the same mesh.
+  /// Replaces the Remesher by a new one for the same mesh.
   void renew(bool fields) {
     TetMesh mesh = remesher_->mesh();
     remesher_.emplace(std::move(mesh));
@@ -70,11 +70,11 @@ class Subject {
   }
 
   Remesher& remesher() { return *remesher_; }
-  /// Seconds for making the lattice and the Remesher.
+  /// Time to create the lattice and the Remesher.
   double seconds() const { return seconds_; }
 
-  /// Up to `count` regions of `tets` tets each, apart from each other, from the boundary and from the regions
-  /// of earlier calls; every other one on the interface.
+  /// Up to `count` regions of `tets` tets each, separate from each other, from the boundary and from the
+  /// regions of earlier calls. Every second one lies on the interface.
   /// \pre places_for() has been called for that size.
   std::vector<Place> places(std::size_t tets, std::size_t count) {
     const auto begin = centres_.begin() + static_cast<std::ptrdiff_t>(std::min(taken_, centres_.size()));
@@ -83,13 +83,13 @@ class Subject {
     return regions_at({begin, end}, tets, width_of(tets));
   }
 
-  /// Number of regions of a size that there is room for.
+  /// Number of regions of a size that fit into the lattice.
   std::size_t places_for(std::size_t tets) {
     list_centres(width_of(tets));
     return centres_.size();
   }
 
-  /// Moves those points of the tets that are within a box.
+  /// Moves those points of the tets that lie within a box.
   void shake(const std::vector<Index>& tets, const Box3& box) {
     std::vector<Index> points;
     for (const Index t : tets)
@@ -133,7 +133,7 @@ class Subject {
     remesher_->add_tet_field(1, std::move(at_tets));
   }
 
-  /// Width of a region with a gap, in cubes.
+  /// Width of a region including the gap, in cubes.
   static int width_of(std::size_t tets) {
     return static_cast<int>(std::ceil(std::cbrt(static_cast<double>(tets) / 6))) + gap;
   }
@@ -156,18 +156,18 @@ class Subject {
     }
   }
 
-  /// Finds the regions at the centres. Scans the whole mesh, so that a call starts with cold processor
+  /// Finds the regions at the centres. Reads the whole mesh, so that a call starts with cold processor
   /// caches.
   std::vector<Place> regions_at(const std::vector<Vec3>& centres, std::size_t tets, double width) const {
     struct Candidate {
-      double distance;  ///< distance of its nearest vertex from the centre, in the max norm
+      double distance;  ///< distance of its nearest vertex from the centre, in the maximum norm
       Index tet;
       bool operator<(const Candidate& b) const {
         return distance != b.distance ? distance < b.distance : tet < b.tet;
       }
     };
     std::vector<std::vector<Candidate>> near(centres.size());
-    // Find the centre near a point: each cell of a grid has at most one.
+    // Find the centre near a point: each cell of the grid has at most one.
     const auto cell = [&](const Vec3& p) {
       const auto axis = [&](double x) { return static_cast<int>(std::floor(x / width)); };
       return std::array<int, 3>{axis(p.x() - n_ / 2.0 + width / 2), axis(p.y() - gap / 2.0),
@@ -204,8 +204,8 @@ class Subject {
   Random random_;
   std::optional<Remesher> remesher_;
   double seconds_ = 0;
-  std::vector<Vec3> centres_;  ///< of regions
-  std::size_t taken_ = 0;      ///< centres used
+  std::vector<Vec3> centres_;  ///< centres of regions
+  std::size_t taken_ = 0;      ///< number of centres used
 };
 
 double median(std::vector<double> values) {
@@ -217,7 +217,7 @@ double median(std::vector<double> values) {
 
 double megabytes(std::size_t bytes) { return static_cast<double>(bytes) / 1e6; }
 
-/// Measures calls of every kind on regions of a size.
+/// Measures calls of every kind on regions of one size.
 nlohmann::json measure_calls(double size, std::size_t tets, const Options& o) {
   const ThreadLimit one(1);
   Subject subject(size, o);
@@ -261,14 +261,14 @@ nlohmann::json measure_calls(double size, std::size_t tets, const Options& o) {
 }
 
 /// Measures a long series of calls: each of many regions is refined, coarsened, moved and improved. Records
-/// the state after the first call, after each quarter, and after another quarter by a new Remesher of the
-/// same mesh: the difference is what the old one has accumulated.
+/// the state after the first call, after each quarter, and after another quarter with a new Remesher of the
+/// same mesh; the difference shows what the old one has accumulated.
 nlohmann::json measure_row(const Options& o) {
   const ThreadLimit one(1);
   Subject subject(o.calls_size, o);
   const std::size_t first_count = subject.remesher().tet_count();
   constexpr double half = 2.5;  // a box of about 1,000 tets
-  std::vector<double> ms;       // since the last state
+  std::vector<double> ms;       // since the last recorded state
   nlohmann::json states = nlohmann::json::array();
   const auto take_state = [&](int calls) {
     const Remesher& r = subject.remesher();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Time and memory of `tetwright simplify` by the size of its input, with one thread and two.
+// Time and memory of `tetwright simplify` as functions of the size of its input, with one thread and two.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -22,12 +22,12 @@ struct Options {
   std::vector<unsigned> threads{1, 2};
   double reduction = 20;
   int pairs = 5;
-  double pairs_below = 1.5e6;  ///< larger meshes are run once
+  double pairs_below = 1.5e6;  ///< larger meshes are simplified once
   std::string surface = "/usr/share/glmark2/models/bunny.obj";
   std::string program, json;
 };
 
-/// Times arithmetic on registers: the current speed of the machine's threads.
+/// Times arithmetic on registers, as a measure of the current speed of the machine's threads.
 double compute_seconds(unsigned threads) {
   constexpr std::uint64_t steps = 400'000'000;
   const Stopwatch watch;
@@ -41,7 +41,7 @@ double compute_seconds(unsigned threads) {
     });
   for (std::thread& t : all) t.join();
   const double seconds = watch.seconds();
-  // Read the sums, so that the compiler keeps the loops.
+  // Read the sums, so that the compiler does not remove the loops.
   for (const std::uint64_t s : sums)
     if (s == 0) std::printf(" ");
   return seconds;
@@ -81,7 +81,7 @@ class Scaling {
   /// Writes a mesh to `path` and returns its number of tets.
   std::size_t make_mesh(double size, const std::string& path) {
     // The number of tets grows with the cube of the resolution: extrapolate from the last mesh, or from a
-    // small first one.
+    // small trial mesh.
     if (tets_per_cell_ == 0) {
       const std::size_t trial = mesh_once(48, path);
       tets_per_cell_ = static_cast<double>(trial) / (48.0 * 48 * 48);
@@ -103,7 +103,7 @@ class Scaling {
     return read_json(stats)["result"]["tets"];
   }
 
-  /// Runs the program once and adds its statistics.
+  /// Runs the program once and returns its statistics.
   nlohmann::json simplify_once(const std::string& mesh, std::size_t target, unsigned threads) {
     const std::string stats = scratch_ / "simplify.json";
     const ProgramRun r = run_program({o_.program, "simplify", mesh, "-o", scratch_ / "out.vtu",
@@ -162,8 +162,8 @@ class Scaling {
     std::fflush(stdout);
   }
 
-  /// Straight line through the peaks of the smallest mesh of at least about a million tets and of the
-  /// largest, with the first number of threads. If all are smaller, through the first and the last.
+  /// Straight line through the peaks of the smallest mesh of at least about a million tets and of the largest
+  /// mesh, with the first number of threads. If all meshes are smaller, through the first and the last.
   nlohmann::json memory_line() const {
     std::vector<std::pair<double, double>> points;
     for (const auto& c : cases_)

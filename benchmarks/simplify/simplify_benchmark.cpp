@@ -10,8 +10,8 @@
 namespace tetwright {
 namespace {
 
-/// Simplifies a dense mesh to a fortieth of its tets. Counters report the result's quality, so that speed is
-/// never read without it.
+/// Simplifies a dense mesh to a fortieth of its tets. Counters report the quality of the result together with
+/// the time.
 void simplify_fortieth(benchmark::State& state) {
   const TetMesh& mesh = benchmark_mesh(static_cast<int>(state.range(0)));
   const ThreadLimit limit(static_cast<unsigned>(state.range(1)));

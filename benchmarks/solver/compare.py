@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Meshes the same bodies with Tetwright, Gmsh, TetGen and Netgen and compares the value of the meshes to a solver.
+"""Meshes the same bodies with Tetwright, Gmsh, TetGen and Netgen and compares how well the meshes suit a solver.
 
 usage: compare.py [--help]    (Debian's python3; gmsh, tetgen and python3-netgen if they are installed)
 
-Tetwright meshes a scan to a count, once by default and once with a bound on the edges that makes all of about one size.
-The others fill the boundary of each of these meshes, to the same count within a few percent, since they keep the triangles
-of their input surface, and a scan has far too many for such a count. So all meshes have the same surface of good triangles
-and differ only inside.
+Tetwright meshes a scan to a target number of tets, once by default and once with a bound on edge lengths that makes
+all tets about the same size. The others fill the boundary of each of these meshes with the same number of tets, within
+a few percent: they keep the triangles of their input surface, and a scan has far too many for such a number. All meshes
+thus have the same surface of well-shaped triangles and differ only inside.
 """
 import argparse
 import json
@@ -23,19 +23,20 @@ from off_surface import read_off, write_stl
 
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[1]
-PYTHON = "/usr/bin/python3"  # another one on the path may not see Debian's modules
+PYTHON = "/usr/bin/python3"  # another Python on the path may not have Debian's modules
 COUNT_TOLERANCE = 0.02
 MOST_TRIALS = 10
 SECONDS_FOR_A_MESH = 600
-# Times the edge of the regular tet with the mean volume: well-shaped tets of about one size have edges up to
-# this, and a much shorter bound makes more tets than the target.
+# Maximum edge length, relative to the edge of the regular tet with the mean volume: well-shaped tets of about equal
+# size have edges up to this; a much shorter bound leads to more tets than the target.
 LONGEST_EDGE = 1.6
 SCANS = {"bunny": "scans/bunny_pmp.off", "armadillo": "scans/armadillo_libigl.obj", "dragon": "scans/dragon_quartet.obj"}
 SAMPLES = ("knot", "sphere", "torus", "cube")
 
 
 def run(*command, folder=None):
-    """Returns the standard output of a program; None, with a line on stderr, if it failed or took too long."""
+    """Returns the standard output of a program; prints a line on stderr and returns None if it failed or took too
+    long."""
     command = [str(c) for c in command]
     try:
         answer = subprocess.run(command, cwd=folder, check=False, capture_output=True, text=True, errors="replace",
@@ -43,7 +44,7 @@ def run(*command, folder=None):
     except subprocess.TimeoutExpired:
         print(f"{command[0]}: more than {SECONDS_FOR_A_MESH} s", file=sys.stderr)
         return None
-    # Status 1: tetwright's mesh falls short of the request. A mesh that exists is judged by its measures.
+    # Status 1: tetwright's mesh does not meet a request. A mesh that exists is judged by its measures.
     if answer.returncode not in (0, 1):
         print(f"{command[0]}: status {answer.returncode}: {(answer.stderr or answer.stdout)[-300:]}", file=sys.stderr)
         return None
@@ -51,7 +52,7 @@ def run(*command, folder=None):
 
 
 class Gmsh:
-    """Delaunay with Gmsh's own optimisation; the parameter is the size inside."""
+    """Delaunay with Gmsh's own optimisation; the parameter is the edge length inside."""
     name, first, power = "Gmsh", None, -3
 
     @staticmethod
@@ -81,10 +82,10 @@ class Gmsh:
 
 
 class TetGen:
-    """Quality Delaunay that keeps the surface; the parameter is the max volume.
+    """Quality Delaunay that keeps the surface; the parameter is the maximum volume.
 
-    Uses the strictest bound on shapes (ratio of circumradius and shortest edge / dihedral angle) that alone makes no more
-    tets than the target.
+    Uses the strictest bound on shapes (ratio of circumradius to shortest edge / dihedral angle) that by itself does not
+    lead to more tets than the target.
     """
     name, first, power = "TetGen", None, -1
     BOUNDS = ("1.2/10", "1.3/5", "1.414", "2", "3", "5")
@@ -141,10 +142,10 @@ class Netgen:
 
 
 def search(program, surface, target, first, folder):
-    """Meshes with different parameters until the count is reached; returns the file with the nearest count.
+    """Meshes with different parameters until the number of tets is reached; returns the file with the nearest number.
 
-    If two trials enclose the count, the next parameter is on the straight line through the logarithms of both, shifted
-    towards the middle; otherwise it follows the power law between parameter and count.
+    If two trials enclose the target, the next parameter lies on the straight line through the logarithms of both,
+    shifted towards the middle; otherwise it follows from the power law between parameter and number.
     """
     program.begin(surface, target, folder)
     below = above = best = None  # (parameter, count) on either side of the target; (miss, file, count)
@@ -176,7 +177,8 @@ def regular_edge(volume):
 
 
 def prepare(surface, target, options, folder, *more):
-    """Returns Tetwright's mesh, its count and its volume; writes its boundary to surface.off and surface.stl."""
+    """Returns Tetwright's mesh, its number of tets and its volume; writes its boundary to surface.off and
+    surface.stl."""
     folder.mkdir(parents=True, exist_ok=True)
     mesh, stats, skin = folder / "tetwright.vtu", folder / "tetwright.json", folder / "surface.off"
     run(options.bin / "tetwright", "prepare", surface, "-o", mesh, "--target-tets", target, "--boundary", skin,
@@ -189,7 +191,7 @@ def prepare(surface, target, options, folder, *more):
 
 
 def fill(name, mesh, count, volume, programs):
-    """Returns the meshes of the surface, Tetwright's among them, by the name of their program."""
+    """Returns the meshes of the surface, including Tetwright's, by the name of their program."""
     meshes = {"Tetwright": mesh}
     for program in programs:
         first = {"Gmsh": regular_edge(volume / count), "TetGen": 2 * volume / count}.get(program.name, program.first)

@@ -9,7 +9,7 @@ namespace tetwright {
 
 namespace {
 
-/// Sums element matrices of `components` unknowns at each vertex into the matrix of the mesh.
+/// Sums element matrices with `components` unknowns at each vertex into the matrix of the mesh.
 template <class ElementMatrix>
 SparseMatrix assemble(const TetMesh& mesh, int components, ElementMatrix element_matrix) {
   std::vector<Eigen::Triplet<double>> entries;

@@ -19,8 +19,8 @@ struct Elasticity {
   double poisson = 0.3;
 };
 
-/// A tet of linear finite elements: its volume and the constant gradients of the four basis functions, each 1
-/// at one vertex and 0 at the others.
+/// A tet of linear finite elements: its volume and the constant gradients of the four basis functions, each
+/// of which is 1 at one vertex and 0 at the others.
 /// \pre The tet is positive.
 struct LinearTet {
   double volume;
@@ -36,21 +36,21 @@ Eigen::Matrix4d heat_stiffness(const LinearTet& tet);
 /// axis a.
 ElasticMatrix elastic_stiffness(const LinearTet& tet, const Elasticity& material);
 
-/// The full matrices of a mesh, without boundary conditions.
+/// Full matrices of a mesh, without boundary conditions.
 /// \pre All tets are positive.
 SparseMatrix heat_matrix(const TetMesh& mesh);
 SparseMatrix elastic_matrix(const TetMesh& mesh, const Elasticity& material);
 
-/// Volume of each point: a quarter of each of its tets. With unit density these are the lumped masses.
+/// Volume of each point: a quarter of the volume of its tets. With unit density these are the lumped masses.
 Eigen::VectorXd point_volumes(const TetMesh& mesh);
 
-/// By point: whether it has a face with one tet only.
+/// By point: 1 if it belongs to a face of exactly one tet.
 std::vector<std::uint8_t> boundary_points(const TetMesh& mesh);
 
-/// Removes points that no tet uses: a matrix would have empty rows for them.
+/// Removes points that no tet uses; a matrix would have empty rows for them.
 void remove_unused_points(TetMesh& mesh);
 
-/// The equations of the free unknowns, where those flagged in `fixed` have the given `values`.
+/// Equations of the free unknowns; the unknowns flagged in `fixed` have the given `values`.
 struct FreeSystem {
   SparseMatrix matrix;
   Eigen::VectorXd right_side;
@@ -58,7 +58,7 @@ struct FreeSystem {
 
   FreeSystem(const SparseMatrix& all, const Eigen::VectorXd& load, const std::vector<std::uint8_t>& fixed,
              const Eigen::VectorXd& values);
-  /// The full solution: `values` with the free ones replaced.
+  /// Full solution: `values`, with the free unknowns replaced.
   Eigen::VectorXd expand(const Eigen::VectorXd& solution, Eigen::VectorXd values) const;
 };
 

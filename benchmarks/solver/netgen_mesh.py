@@ -3,7 +3,7 @@
 
 usage: netgen_mesh.py SURFACE.off GRADING OUT.msh    (Debian's python3-netgen; prints the number of tets)
 
-GRADING is how fast tets may grow away from the surface, and so controls the number of tets.
+GRADING tells how fast tets may grow away from the surface, and thus controls the number of tets.
 """
 import sys
 

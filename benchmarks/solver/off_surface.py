@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Exchange of surfaces between the programs: reads the .off files that tetwright writes, and writes .stl for Gmsh."""
+"""Exchanges surfaces between the programs: reads .off files written by tetwright, and writes .stl files for Gmsh."""
 
 
 def read_off(path):
@@ -19,7 +19,7 @@ def read_off(path):
 
 
 def write_stl(places, faces, path):
-    """Writes text with every digit, so that equal points stay equal; readers compute the normals."""
+    """Writes text with all digits, so that equal points stay equal; readers compute the normals."""
     with open(path, "w", encoding="ascii") as file:
         file.write("solid body\n")
         for face in faces:

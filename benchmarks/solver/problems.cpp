@@ -13,11 +13,11 @@ namespace tetwright {
 
 namespace {
 
-/// Relative residual at which iterations stop: usual in engineering.
+/// Relative residual at which iterations stop, a common choice in engineering.
 constexpr double iterations_tolerance = 1e-8;
 /// Relative residual far below the discretisation errors to be measured.
 constexpr double poisson_tolerance = 1e-11;
-/// Share of the bounding box that is held.
+/// Fraction of the bounding box that is held.
 constexpr double held_share = 0.1;
 
 using ConjugateGradient = Eigen::ConjugateGradient<SparseMatrix, Eigen::Lower | Eigen::Upper,
@@ -63,7 +63,7 @@ class PlaneWaves {
  private:
   Vec3 phases(const Vec3& p) const {
     return number_ * (directions_ * (p - origin_)) +
-           Vec3(0, 1, 2);  // otherwise all three vanish at the origin
+           Vec3(0, 1, 2);  // otherwise all three waves vanish at the origin
   }
   Vec3 origin_;
   double number_;  ///< wave number, radians per input unit

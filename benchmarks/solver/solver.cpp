@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The value of meshes to a solver: iterations, time steps, eigenvalues and errors of linear finite elements.
+// Suitability of meshes for a solver: iterations, time steps, eigenvalues and errors of linear finite
+// elements.
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -17,9 +18,9 @@
 namespace tetwright {
 namespace {
 
-/// Reads any program's mesh and makes its tets positive.
+/// Reads the mesh of any program and orients its tets.
 ///
-/// \throws InputError if that is not possible, since a solver could not use them.
+/// \throws InputError if some tet cannot be made positive, since a solver could not use it.
 TetMesh read_for_solver(const std::string& path) {
   TetMesh mesh = read_tet_mesh(path).mesh;
   const ImportCleanupReport report = make_coherent(mesh);

@@ -13,18 +13,18 @@ namespace tetwright {
 
 namespace {
 
-/// Relative error of a Ritz value that is good enough for a table.
+/// Relative error of a Ritz value that is sufficient for a table.
 constexpr double ritz_tolerance = 1e-6;
-/// Max Lanczos steps: extreme eigenvalues of finite element matrices take some tens.
+/// Maximum number of Lanczos steps; extreme eigenvalues of finite element matrices take several tens.
 constexpr int max_steps = 3000;
 constexpr int steps_between_tests = 10;
 
 struct RitzValue {
   double value;
-  double error;  ///< max distance of the nearest eigenvalue
+  double error;  ///< maximum distance from the nearest eigenvalue
 };
 
-/// The largest eigenvalue of the tridiagonal Lanczos matrix, and the residual norm of its vector.
+/// Largest eigenvalue of the tridiagonal Lanczos matrix, and the residual norm of its vector.
 RitzValue largest_ritz_value(const std::vector<double>& diagonal, const std::vector<double>& off_diagonal) {
   const auto n = static_cast<Eigen::Index>(diagonal.size());
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver;
@@ -67,7 +67,7 @@ double largest_frequency(const SparseMatrix& stiffness, const Eigen::VectorXd& m
     diagonal.push_back(next.dot(vector));
     next -= diagonal.back() * vector;
     off_diagonal.push_back(next.norm());
-    // A small mesh may have no further eigenvectors with a component in the first vector.
+    // A small mesh may have no further eigenvectors with a component in the start vector.
     const bool exhausted = off_diagonal.back() <= ritz_tolerance * diagonal.front() || step == masses.size();
     if (exhausted || step % steps_between_tests == 0) {
       const RitzValue ritz = largest_ritz_value(diagonal, off_diagonal);

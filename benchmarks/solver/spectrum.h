@@ -5,23 +5,23 @@
 
 namespace tetwright {
 
-/// Max eigenvalues of the element stiffness matrices. Times the number of tets at a point they bound that of
-/// the full matrix from above (Shewchuk, "What is a good linear finite element?", 2002, section 3).
+/// Maximum eigenvalues of the element stiffness matrices. Multiplied by the number of tets at a point, they
+/// are upper bounds for the full matrix (Shewchuk, "What is a good linear finite element?", 2002, section 3).
 struct ElementEigenvalues {
   double heat = 0;
   double elastic = 0;
 };
 
-/// Max eigenvalues over all tets, divided by `edge`, a length of the mesh, and by Young's modulus:
-/// dimensionless and comparable between meshes of one size.
+/// Maximum eigenvalues over all tets, divided by `edge`, a length of the mesh, and by Young's modulus:
+/// dimensionless and comparable between meshes of the same size.
 ElementEigenvalues largest_element_eigenvalues(const TetMesh& mesh, const Elasticity& material, double edge);
 
 /// Edge of the regular tet with the mesh's mean tet volume.
 double mean_regular_edge(const TetMesh& mesh);
 
-/// The max angular frequency w of K x = w^2 M x, where M is diagonal: central differences in time are stable
+/// Maximum angular frequency w of K x = w^2 M x, where M is diagonal: central differences in time are stable
 /// up to a step of 2 / w. Lanczos iteration from a random vector. The result is the largest Ritz value plus
-/// its error bound, so that a step from it is stable; the bound is below 1e-6 of it.
+/// its error bound, so that a time step derived from it is stable; the bound is below 1e-6 of it.
 ///
 /// \param stiffness K, symmetric.
 /// \param masses diagonal of M, above 0.

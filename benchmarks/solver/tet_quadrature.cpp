@@ -29,7 +29,7 @@ std::vector<TetQuadraturePoint> collapsed_cube() {
     for (const GaussPoint& s : gauss)
       for (const GaussPoint& t : gauss) {
         const double x = r.place, y = (1 - x) * s.place, z = (1 - x) * (1 - s.place) * t.place;
-        // Determinant of the collapse, divided by the tet's volume 1/6.
+        // Jacobian determinant of the collapse, divided by the tet's volume 1/6.
         const double stretch = 6 * (1 - x) * (1 - x) * (1 - s.place);
         points.push_back({{1 - x - y - z, x, y, z}, stretch * r.weight * s.weight * t.weight});
       }

@@ -9,7 +9,7 @@
 
 namespace tetwright {
 
-/// A quadrature point: its barycentric coordinates, and its share of the tet's volume.
+/// A quadrature point: its barycentric coordinates, and its fraction of the tet's volume.
 struct TetQuadraturePoint {
   Eigen::Vector4d barycentric;
   double weight;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double percent_step = 10;
 constexpr int iteration_limit = 200;
-constexpr int max_idle = 5;  ///< max consecutive iterations that remove hardly any tets
+constexpr int max_idle = 5;  ///< maximum number of consecutive iterations that remove hardly any tets
 
 /// Quality^3 below which `percent` of the tets lie.
 float cutoff(const EditableMesh& mesh, double percent) {
@@ -40,8 +40,8 @@ void sort_by_weight(std::vector<WeighedCollapse>& candidates) {
   });
 }
 
-/// The loop shared by both blocks. `block(limit)` processes the tets below the limit, `grow(removed)` updates
-/// E.
+/// The loop common to both kinds of blocks. `block(limit)` processes the tets below the limit,
+/// `grow(removed)` updates E.
 template <class Block, class Grow>
 void iterate(Workpiece& piece, const Block& block, const Grow& grow) {
   double percent = percent_step;

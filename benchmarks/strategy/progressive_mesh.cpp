@@ -9,10 +9,10 @@ namespace {
 
 struct Queued {
   WeighedCollapse collapse;
-  std::uint32_t version;  ///< version of the origin when it was weighed
+  std::uint32_t version;  ///< version of the origin when the weight was computed
 };
 
-/// Order for heaps of the standard library, which have the largest first.
+/// Order for heaps of the standard library, whose top is the largest element.
 bool later(const Queued& a, const Queued& b) {
   const WeighedCollapse &x = a.collapse, &y = b.collapse;
   return x.weight != y.weight   ? x.weight > y.weight
@@ -49,7 +49,7 @@ class ProgressiveMesh {
     return versions_[q.collapse.origin] == q.version && piece_.alive(q.collapse.origin);
   }
 
-  /// Weighs the half-edges that begin at a point into fresh_.
+  /// Computes the weights of the half-edges that begin at a point and stores them in fresh_.
   void weigh(Index p) {
     weighed_.clear();
     ++versions_[p];
@@ -73,7 +73,7 @@ class ProgressiveMesh {
     fresh_.clear();
   }
 
-  /// Removes outdated entries: memory would otherwise grow without bound.
+  /// Removes outdated entries; otherwise memory would grow without bound.
   void drop_outdated() {
     std::erase_if(heap_, [&](const Queued& q) { return !current(q); });
     std::make_heap(heap_.begin(), heap_.end(), later);
@@ -82,9 +82,9 @@ class ProgressiveMesh {
 
   Workpiece& piece_;
   bool eager_;
-  VolumeLedger ledger_;  // no bounds: the paper has none
+  VolumeLedger ledger_;  // without bounds, as in the paper
   Workspace task_;
-  std::vector<std::uint32_t> versions_;  ///< by point; incremented when its half-edges are weighed again
+  std::vector<std::uint32_t> versions_;  ///< by point; incremented when its half-edges get new weights
   std::vector<Queued> heap_, fresh_;
   std::size_t drop_outdated_at_ = 0;
   std::vector<WeighedCollapse> weighed_;

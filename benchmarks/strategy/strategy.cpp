@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Section 7 of Cutler, Dorsey & McMillan 2004: block iteration against a progressive mesh, on the same code.
+// Section 7 of Cutler, Dorsey & McMillan 2004: block iteration compared with a progressive mesh, on the same
+// code.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>

@@ -13,8 +13,8 @@ Workpiece::Workpiece(TetMesh input, std::size_t target_tets)
   rules.objective.quality = TetQuality::for_target(mesh.total_volume(), static_cast<double>(target));
   rules.error.max.reset();
   rules.count.min = 0;
-  // Refuse only shapes far worse than the current ones, in both orderings alike: neither could reach the
-  // target if nothing might get worse.
+  // Refuse only shapes far worse than the current ones, in both orderings: neither could reach the target if
+  // no shape were allowed to get worse.
   rules.acceptance.worse_probability = 1;
   rules.acceptance.worse_floor = 0.1f;
   grid.build(mesh, rules.objective.quality.ideal_edge / 2);

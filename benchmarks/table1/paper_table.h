@@ -10,13 +10,13 @@ namespace tetwright {
 /// model.
 struct PaperRow {
   const char* model;
-  const char* scan;          ///< in the data folder
+  const char* scan;          ///< path in the data folder
   std::size_t initial_tets;  ///< tets of the dense mesh
   std::size_t target_tets;
   int iterations;
   int seconds;
-  double below_before, below_after;  ///< percent of tets under 0.1 sr
-  double min_after;                  ///< min solid angle, steradians
+  double below_before, below_after;  ///< percentage of tets below 0.1 sr
+  double min_after;                  ///< minimum solid angle, steradians
 };
 
 inline constexpr const char* bunny_scan = "scans/bunny_pmp.off";

@@ -26,7 +26,7 @@ std::vector<Vec3> area_samples(const TriangleMesh& m, std::size_t count) {
   double sum = 0, next = step * random.uniform();
   for (const Triangle& t : m.triangles)
     for (sum += area(m, t); next < sum; next += step) {
-      // Uniform in the triangle: fold a square along its diagonal.
+      // Uniform in the triangle: a square is folded along its diagonal.
       double u = random.uniform(), v = random.uniform();
       if (u + v > 1) u = 1 - u, v = 1 - v;
       samples.push_back(m.points[t[0]] + u * (m.points[t[1]] - m.points[t[0]]) +
@@ -55,7 +55,7 @@ std::vector<double> distances(const std::vector<Vec3>& samples, const SurfaceTre
   parallel_for(0, samples.size(), 1024, [&](std::size_t begin, std::size_t end) {
     double reach = size / 1000;
     for (std::size_t i = begin; i < end; ++i) {
-      // A bound shortens the search: that of the last sample, widened until a triangle is found.
+      // A bound shortens the search: the distance of the last sample, enlarged until a triangle is found.
       for (;; reach *= 4) {
         out[i] = tree.distance(samples[i], reach);
         if (out[i] < reach || reach > 4 * size) break;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Table 1 of Cutler, Dorsey & McMillan 2004, measured again: the paper's columns beside ours.
+// Table 1 of Cutler, Dorsey & McMillan 2004, measured again: the paper's columns next to ours.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -87,7 +87,7 @@ void print_row(const PaperRow& p, const std::string& schedule, const nlohmann::j
   std::fflush(stdout);
 }
 
-/// Measures all repetitions of a row with one schedule, each in a process of its own.
+/// Measures all repetitions of a row with one schedule, each in a separate process.
 nlohmann::json measure(const PaperRow& p, const std::string& schedule, const std::string& dense,
                        const std::string& scan, const Options& o) {
   nlohmann::json row;
@@ -115,7 +115,7 @@ int run(const Options& o) {
   if (!o.write.empty()) std::filesystem::create_directories(o.write);
   const ScratchFolder scratch;
   nlohmann::json all = {{"data", o.data}, {"seed", o.seed}, {"rows", nlohmann::json::array()}};
-  std::map<std::string, nlohmann::json> dense_meshes;  // by model, for this run
+  std::map<std::string, nlohmann::json> dense_meshes;  // of this run, by model
   bool failed = false;
   print_heads();
   for (const PaperRow& p : paper_table) {

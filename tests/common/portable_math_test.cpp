@@ -11,7 +11,7 @@
 namespace tetwright::portable_math_test {
 namespace {
 
-/// A value of random sign, with an exponent between the two.
+/// A value of random sign, with an exponent between `low` and `high`.
 double spread(Random& random, int low, int high) {
   const double mantissa = 1 + random.uniform();
   const int exponent = low + static_cast<int>(random.below(static_cast<std::uint32_t>(high - low)));

@@ -16,7 +16,7 @@ inline TetMesh two_tets(MaterialTag second = 1) {
           {}};
 }
 
-/// Two positive tets that share an edge only.
+/// Two positive tets that share only an edge.
 inline TetMesh edge_bridge() {
   return {{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, -1, 0}},
           {{0, 2, 3, 1}, {0, 4, 5, 1}},
@@ -24,7 +24,7 @@ inline TetMesh edge_bridge() {
           {}};
 }
 
-/// Two positive tets that share a point only.
+/// Two positive tets that share only a point.
 inline TetMesh point_bridge() {
   return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}},
           {{0, 1, 2, 3}, {0, 5, 4, 6}},

@@ -9,11 +9,11 @@
 
 namespace tetwright {
 
-/// A folder that is removed with the object.
+/// A folder that is removed on destruction.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
-    const std::string random_part(6, 'X');  // mkdtemp replaces it
+    const std::string random_part(6, 'X');  // replaced by mkdtemp
     std::string name = (std::filesystem::temp_directory_path() / ("tetwright-" + random_part)).string();
     path_ = mkdtemp(name.data());
   }

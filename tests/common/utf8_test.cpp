@@ -13,7 +13,7 @@ TEST(Utf8, WhatIsNotValidIsReplaced) {
   EXPECT_EQ(valid_utf8("K\xf6rper"), "K" + r + "rper");  // Latin-1
   EXPECT_EQ(valid_utf8("\xe2\x82"
                        "a\xc3"),
-            r + "a" + r);                                            // cut short: one for each character
+            r + "a" + r);                                            // truncated: one for each character
   EXPECT_EQ(valid_utf8("\xc0\xaf"), r + r);                          // overlong
   EXPECT_EQ(valid_utf8("\xed\xa0\x80"), r + r + r);                  // a surrogate
   EXPECT_EQ(valid_utf8("\xf4\x90\x80\x80\xff"), r + r + r + r + r);  // beyond the last code point

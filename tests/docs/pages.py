@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads the Markdown pages of README and guide: fenced blocks, links, anchors, and what stands in code."""
+"""Reads the Markdown pages of README and guide: fenced blocks, links, anchors, and text in code."""
 import dataclasses
 import os
 import re
@@ -11,7 +11,7 @@ FENCE = re.compile(r"^```(.*)$")
 
 @dataclasses.dataclass
 class Block:
-    """A fenced block: its language, the attributes behind it, its text and the line it begins in."""
+    """A fenced block: its language, the attributes after it, its text and its first line."""
     language: str
     attributes: dict
     text: str
@@ -19,7 +19,7 @@ class Block:
 
 
 def guide_pages():
-    """README.md, CONTRIBUTING.md and the pages of the guide, by their paths."""
+    """Returns the paths of README.md, CONTRIBUTING.md and the pages of the guide."""
     guide = os.path.join(SOURCE, "data", "guide")
     names = sorted(name for name in os.listdir(guide) if name.endswith(".md"))
     return [os.path.join(SOURCE, "README.md"), os.path.join(SOURCE, "CONTRIBUTING.md"),
@@ -27,7 +27,7 @@ def guide_pages():
 
 
 def all_pages():
-    """Every Markdown page of the source: those of guide_pages() and what folders say of themselves."""
+    """Returns all Markdown pages of the source: guide_pages() and the READMEs of folders."""
     found = []
     for folder, folders, names in os.walk(SOURCE):
         folders[:] = [name for name in folders if name not in ("build", "out", "shared") and not name.startswith(".")]
@@ -41,7 +41,7 @@ def read(path):
 
 
 def attributes_of(words):
-    """`no-run status=1` as a dict; an attribute without a value is True."""
+    """Parses `no-run status=1` into a dict; an attribute without a value is True."""
     out = {}
     for word in words:
         name, equals, value = word.partition("=")
@@ -50,7 +50,7 @@ def attributes_of(words):
 
 
 def blocks(text):
-    """The fenced blocks of a page, in order."""
+    """Returns the fenced blocks of a page, in order."""
     found, lines, begin = [], [], None
     for number, line in enumerate(text.splitlines(), 1):
         fence = FENCE.match(line)
@@ -68,7 +68,8 @@ def blocks(text):
 
 
 def prose(text):
-    """A page without its fenced blocks, whose lines become empty so that the others keep their numbers."""
+    """Returns a page without its fenced blocks; their lines become empty, so that the other lines keep their
+    numbers."""
     out, inside = [], False
     for line in text.splitlines():
         if FENCE.match(line):
@@ -80,12 +81,12 @@ def prose(text):
 
 
 def without_code(text):
-    """Prose without `code`."""
+    """Returns prose without `code`."""
     return re.sub(r"`[^`\n]*`", lambda code: " " * len(code[0]), prose(text))
 
 
 def links(text):
-    """(target, line) of each link and picture."""
+    """Returns (target, line) of each link and picture."""
     found = []
     for number, line in enumerate(without_code(text).splitlines(), 1):
         found += [(target, number) for target in re.findall(r"\]\(([^)\s]+)\)", line)]
@@ -94,7 +95,7 @@ def links(text):
 
 
 def anchors(text):
-    """The anchors of a page's headings, as GitHub makes them."""
+    """Returns the anchors that GitHub generates for a page's headings."""
     found, seen = set(), {}
     for line in prose(text).splitlines():
         heading = re.match(r"#+\s+(.*)", line)

@@ -1,20 +1,20 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the code blocks of Markdown pages in order, as a reader does who copies them.
+"""Runs the code blocks of Markdown pages in order, as a reader would who copies them.
 
     run_blocks.py --program TETWRIGHT [--python-path FOLDER] [--prefix FOLDER] PAGE...
 
-Each page has an empty folder of its own, which its blocks share. Blocks of `sh` and `python` are run, each by itself: a
-shell that stops at the first command that fails, and a script. Blocks of other languages are text, unless they are a
-file. Behind the language a block may say
+Each page has a separate folder, initially empty, which its blocks share. Blocks of `sh` and `python` are run
+separately: in a shell that stops at the first command that fails, or as a script. Blocks of other languages are text,
+unless they are a file. Attributes may follow the language of a block:
 
-    no-run        it is only shown: an installation, or a window that opens
-    needs=NAME    it is run where the program NAME is installed, or with python:NAME the Python module
-    status=N      the exit status that is right, instead of 0
-    file=NAME     the block is written to this file and not run; a script or an input for what follows
+    no-run        the block is only shown: an installation, or a window that opens
+    needs=NAME    the block is run if the program NAME is installed, or with python:NAME the Python module
+    status=N      the expected exit status, instead of 0
+    file=NAME     the block is written to this file and not run; a script or an input for later blocks
 
---python-path is where the Python package is, --prefix where CMake finds the installed library; without them the blocks
-that need them (`import tetwright`, and `sh` that calls CMake) are left out. Status 1 if a block fails, or another
-package is missing than those that may be; blocks that are left out are named.
+--python-path is the folder of the Python package, --prefix the one in which CMake finds the installed library. Without
+them the blocks that need them (`import tetwright`, and `sh` that calls CMake) are left out. Status 1 if a block fails,
+or if a package is missing that must not be; blocks that are left out are listed.
 """
 import argparse
 import importlib.util
@@ -28,14 +28,14 @@ import time
 
 import pages
 
-PYTHON = "/usr/bin/python3"  # another one on the path may not see Debian's modules
-# Packages that tools/optional lists, and what Debian has not. Others are installed by tools/setup test.
+PYTHON = "/usr/bin/python3"  # another Python on the path may not have Debian's modules
+# Packages listed in tools/optional, and those that Debian does not have. Others are installed by tools/setup test.
 MAY_BE_MISSING = ("ccx", "python:dolfinx", "python:pyvista")
-SECONDS = 500  # for a block, on a machine with much else to do
+SECONDS = 500  # for a block, on a busy machine
 
 
 def is_there(need):
-    """Whether a program, or with python: a Python module, is installed."""
+    """Returns whether a program, or with python: a Python module, is installed."""
     kind, colon, name = need.partition(":")
     if not colon:
         return shutil.which(need) is not None
@@ -61,7 +61,7 @@ class Runner:
             self._environment["CMAKE_PREFIX_PATH"] = options.prefix
 
     def why_not(self, block):
-        """Why a block is not run, or an empty text."""
+        """Returns why a block is not run, or an empty text."""
         if block.attributes.get("no-run"):
             return "no-run"
         need = block.attributes.get("needs")
@@ -74,7 +74,7 @@ class Runner:
         return ""
 
     def run(self, block):
-        """Runs a block; returns what is wrong, or an empty text."""
+        """Runs a block; returns the error, or an empty text."""
         if "file" in block.attributes:
             with open(os.path.join(self._folder, block.attributes["file"]), "w", encoding="utf-8") as file:
                 file.write(block.text)
@@ -82,7 +82,7 @@ class Runner:
         command = {"sh": ["bash", "-euo", "pipefail", "-c", block.text], "python": [PYTHON, "-c", block.text]}.get(block.language)
         if command is None:
             return ""
-        # A group of its own, so that nothing that a block has started outlives it.
+        # A separate process group, so that no process started by a block outlives it.
         with subprocess.Popen(command, cwd=self._folder, env=self._environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                               stderr=subprocess.STDOUT, text=True, start_new_session=True) as process:
             try:
@@ -97,7 +97,7 @@ class Runner:
 
 
 def run_page(path, options):
-    """Runs a page's blocks; returns the number of those that fail."""
+    """Runs a page's blocks; returns the number of failures."""
     name = os.path.relpath(path, pages.SOURCE)
     with tempfile.TemporaryDirectory(prefix="tetwright-docs-") as folder:
         runner = Runner(options, folder)
@@ -118,7 +118,7 @@ def run_page(path, options):
             if options.times:
                 print(f"{time.monotonic() - begin:6.2f} s  {name}:{block.line}")
             if wrong:
-                # Those that follow build upon it.
+                # The following blocks build upon it.
                 print(f"FAILED: {name}:{block.line}: {wrong}")
                 return 1
             ran += 1

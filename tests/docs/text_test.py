@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What README and guide say exists: options, commands, links, anchors, pictures and files.
+"""Checks that what README and guide mention exists: options, commands, links, anchors, pictures and files.
 
     text_test.py TETWRIGHT
 """
@@ -15,7 +15,7 @@ PROGRAM = ""
 MAX_README_LINES = 150
 MAX_PICTURE_BYTES = 200_000
 
-# Options of other programs, which the text names beside ours.
+# Options of other programs that the text mentions.
 OTHERS = {"--build", "--install", "--ml", "--no-build-isolation", "--no-deps", "--prefix", "--suite", "--target"}
 
 
@@ -24,7 +24,7 @@ def run(*arguments):
 
 
 def commands():
-    """The names of the program's commands."""
+    """Returns the names of the program's commands."""
     listed = run("--help").split("Subcommands:")[1]
     return re.findall(r"^  ([a-z]+) ", listed, re.M)
 

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Common parts of the tests of faults."""
+"""Common parts of the fault tests."""
 import shutil
 import subprocess
 from pathlib import Path
 
-# The documented exit statuses: done, short of what was asked, wrong call, bad input, nothing to mesh, no output,
-# interrupted. 70 is a bug in the program.
+# Documented exit statuses: done, request not met, invalid call, invalid input, nothing to mesh, no output, interrupted.
+# 70 is a bug in the program.
 STATUSES = {0, 1, 2, 3, 4, 5, 130}
-# Seconds; longer than any run here takes on a ten times slower machine.
+# Seconds; longer than any of these runs takes on a machine ten times slower.
 TIMEOUT = 300
 
 
@@ -17,12 +17,12 @@ class Program:
         self.faults = []
 
     def start(self, arguments, prefix=(), **options):
-        """Starts the program, by the command `prefix` if there is one."""
+        """Starts the program, through the command `prefix` if there is one."""
         return subprocess.Popen([*prefix, str(self.path), *map(str, arguments)], stdin=subprocess.DEVNULL,
                                 stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace", **options)
 
     def run(self, arguments, **options):
-        """Runs the program; returns its status, None for a hang, and its output to stderr."""
+        """Runs the program; returns its status, or None if it hangs, and its output to stderr."""
         process = self.start(arguments, **options)
         try:
             error = process.communicate(timeout=TIMEOUT)[1]
@@ -38,7 +38,7 @@ class Program:
             raise SystemExit(f"{' '.join(map(str, arguments))}: status {status}: {error}")
 
     def wrong(self, what, *files):
-        """Records a fault, and keeps the files that show it."""
+        """Records a fault, and keeps the files that reproduce it."""
         self.faults.append(what)
         for file in files:
             file = Path(file)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Inputs of all formats with bytes flipped, truncated, deleted, repeated or inserted."""
+"""Tests inputs of all formats with bytes flipped, truncated, deleted, repeated or inserted."""
 import collections
 import gzip
 import io
@@ -12,7 +12,7 @@ from pathlib import Path
 SURFACES = ("ply", "obj", "stl", "off", "vtp")
 SEEDS = Path(__file__).parents[1] / "fuzz" / "seeds"
 TETS = ("vtu", "msh", "mesh", "meshb", "vtk", "inp", "bdf", "xdmf", "node")
-# Damage to a header matters most: about half of the damage is near the beginning.
+# Damage to a header has the largest effect, so about half of the damage is near the beginning.
 HEADER = 400
 
 
@@ -35,7 +35,7 @@ def damaged(data, draw):
         data[at:at] = data[at:at + length] * draw.choice((1, 2, 50))
     elif kind == 4:  # inserted
         data[at:at] = bytes(draw.randrange(256) for _ in range(length))
-    else:  # a digit is changed or enlarged
+    else:  # a digit is replaced, for example by a huge number
         digits = [i for i in range(len(data)) if 48 <= data[i] <= 57]
         for _ in range(min(len(digits), draw.choice((1, 1, 3)))):
             i = draw.choice(digits)
@@ -44,7 +44,7 @@ def damaged(data, draw):
 
 
 def volumes(folder):
-    """A ball of labels in all formats; the files that are read by name."""
+    """Writes a ball of labels in all formats; returns the files that are read by name."""
     side = 12
     labels = bytes((2 if x < 6 else 1) if (x - 5.5) ** 2 + (y - 5.5) ** 2 + (z - 5.5) ** 2 < 25 else 0
                    for z in range(side) for y in range(side) for x in range(side))
@@ -88,7 +88,7 @@ def damaged_file(path, data, draw):
 
 
 def inputs(p):
-    """Files, each with the calls that read it."""
+    """Returns files, each with the calls that read it."""
     folder = p.folder / "in"
     folder.mkdir()
     p.must(["sample", "cube", "-o", folder / "s.ply"])
@@ -130,7 +130,7 @@ def one(p, path, call, draw):
     original = path.read_bytes()
     out = p.folder / "out.vtu"
     out.unlink(missing_ok=True)
-    # One of two files is damaged in place, with the other one intact.
+    # One of two files is damaged in place; the other one stays intact.
     path.write_bytes(damaged_file(path, original, draw))
     try:
         other = [argument for argument in call if isinstance(argument, Path)]
@@ -147,8 +147,8 @@ def one(p, path, call, draw):
                 p.wrong(f"{what}: status 1 and nothing said", path)
             if p.run(["check", out, "--quiet"])[0] == 0:
                 return "a valid mesh, status %d" % status
-            # A point that was moved may leave a mesh that reads well and has inverted tets, which `improve` says
-            # and keeps where it cannot put them right.
+            # A moved point may leave a readable mesh with inverted tets, which `improve` reports and keeps if it cannot
+        # repair them.
             if call[0] != "improve" or p.run(["check", *(other or [path]), "--quiet"])[0] == 0:
                 p.wrong(f"{what}: the mesh is not valid", path)
             return "a mesh with the inverted tets or intersections of its input"

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Faults around the program must leave whole files, no temporary ones, and the right status.
+"""Checks that faults around the program leave complete files, no temporary files, and the right status.
 
     faults.py PROGRAM [--kills N] [--corruptions N] [--seed S] [--keep FOLDER]
 
-Kills at any time, a disk that fills, a folder that becomes read-only, two processes with one output, limits on
-memory and open files, and damaged inputs of all formats. Prints counts of the outcomes; status 1 if one is wrong,
-with the files that show it in FOLDER.
+Tests kills at any time, a disk that becomes full, a folder that becomes read-only, two processes with the same output,
+limits on memory and open files, and damaged inputs of all formats. Prints the numbers of outcomes; status 1 if one is
+wrong, with the files that reproduce it in FOLDER.
 """
 import argparse
 import collections

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Signals at times spread over whole runs."""
+"""Tests signals at times distributed over whole runs."""
 import collections
 import json
 import random
@@ -15,7 +15,7 @@ OLD = b"what was there before\n"
 
 
 def commands(p):
-    """Runs with several outputs each, about a second long: name, arguments, outputs."""
+    """Returns runs with several outputs, about a second long: name, arguments, outputs."""
     folder = p.folder
     p.must(["sample", "knot", "-o", folder / "scan.ply"])
     p.must(["sample", "organs", "-o", folder / "organs.nrrd"])
@@ -39,7 +39,8 @@ def commands(p):
 
 
 def kept_whole(path, new):
-    """"old", "new", or None for anything else. Statistics have times: whole JSON is new."""
+    """Returns "old", "new", or None for other contents. Statistics contain times, so any complete JSON counts as
+    new."""
     content = path.read_bytes()
     if content == OLD:
         return "old"
@@ -77,7 +78,7 @@ def run_one(p, arguments, outputs, new, number, delay):
     if number == signal.SIGKILL:
         allowed = {0, -signal.SIGKILL}
     else:
-        # A signal before the handler is installed ends the process by default.
+        # A signal that arrives before the handler is installed ends the process by default.
         allowed = {0, 130, -number}
         if left:
             p.wrong(f"{what}: leaves {len(left)} temporary files")
@@ -91,7 +92,7 @@ def run_one(p, arguments, outputs, new, number, delay):
 
 
 def run_batch(p, number, delay):
-    """A killed batch can be continued, and does not repeat finished jobs."""
+    """Checks that a killed batch can be continued without repeating finished jobs."""
     folder = p.folder / "batch"
     folder.mkdir(exist_ok=True)
     jobs, results = folder / "jobs.jsonl", folder / "results.jsonl"
@@ -134,7 +135,7 @@ def run(p, count, seed):
     draw = random.Random(seed)
     for i in range(count):
         number = SIGNALS[i % len(SIGNALS)]
-        # Every fifth round of signals is for batches.
+        # Every fifth round of signals tests batches.
         if i // len(SIGNALS) % 5 == 4:
             outcomes[run_batch(p, number, draw.uniform(0, batch_seconds))] += 1
             continue

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""No space on the disk, no permission, no memory, no file handles, and concurrent processes."""
+"""Tests full disks, missing permissions, too little memory, too few file handles, and concurrent processes."""
 import collections
 import os
 import resource
@@ -30,7 +30,7 @@ def limit(kind, value):
 
 
 def full_disk(p, arguments, out, new):
-    """Limits on the size of files, up to the size needed."""
+    """Tests limits on the size of files, up to the size needed."""
     outcomes = collections.Counter()
     size = len(new)
     for share in (0, 0.01, 0.3, 0.6, 0.999, 1):
@@ -42,9 +42,9 @@ def full_disk(p, arguments, out, new):
 
 
 def read_only_folder(p, arguments, out, new, seconds):
-    """A folder is read-only at first, or becomes so while the program works."""
+    """Tests a folder that is read-only, or becomes so while the program works."""
     outcomes = collections.Counter()
-    # root may write anywhere, unless it lacks this capability
+    # root may write everywhere, unless it lacks this capability
     prefix = ["setpriv", "--inh-caps=-dac_override", "--bounding-set=-dac_override"] if os.geteuid() == 0 else []
     for delay in (None, 0.3 * seconds, 0.7 * seconds):
         out.unlink(missing_ok=True)
@@ -67,7 +67,7 @@ def read_only_folder(p, arguments, out, new, seconds):
 
 
 def two_processes(p, arguments, out):
-    """Two processes with one output both succeed, and the file is that of one of them."""
+    """Checks that two processes with the same output both succeed, and that the file is that of one of them."""
     outcomes = collections.Counter()
     results = []
     for seed in ("1", "2"):
@@ -86,15 +86,15 @@ def little_memory(p, arguments, out, new):
     for megabytes in (20, 40, 60, 80, 100, 150, 200, 300, 500):
         out.write_bytes(OLD)
         status, error = p.run(arguments, preexec_fn=limit(resource.RLIMIT_AS, megabytes << 20))
-        # Below some the libraries cannot be loaded, or log4cplus, which OpenVDB brings, ends the process before
-        # main() since it cannot start a thread: then nothing works at all.
+        # With too little memory the libraries cannot be loaded, or log4cplus, which OpenVDB uses, ends the process
+        # before main() since it cannot start a thread; then nothing works at all.
         if p.run(["--version"], preexec_fn=limit(resource.RLIMIT_AS, megabytes << 20))[0] != 0:
             outcomes["little memory: the program cannot be loaded"] += 1
             if out.read_bytes() != OLD:
                 p.wrong("little memory: half-written output", out)
             continue
         content = out.read_bytes()
-        states = [OLD] if status == 5 else [content]  # a smaller mesh where memory decides the cells
+        states = [OLD] if status == 5 else [content]  # a smaller mesh if memory determines the cells
         outcomes[expect(p, "little memory", status, error, {0, 1, 5}, out, states)] += 1
         if status in (0, 1) and subprocess.run([p.path, "check", out], capture_output=True).returncode != 0:
             p.wrong("little memory: the mesh is not valid", out)

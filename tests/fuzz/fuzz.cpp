@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// One program for all targets, so that common code is compiled once: build/asan/bin/fuzz TARGET and then the
-// arguments of libFuzzer; `fuzz --list` prints the targets.
+// A single program for all targets, so that common code is compiled once: build/asan/bin/fuzz TARGET,
+// followed by the arguments of libFuzzer; `fuzz --list` prints the targets.
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -35,7 +35,7 @@ Target chosen;
 extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
   using namespace tetwright::fuzz;
   const std::string_view wanted = *argc > 1 ? (*argv)[1] : "";
-  // -merge, -fork and -minimize_crash restart the program without that name.
+  // -merge, -fork and -minimize_crash restart the program without the target's name.
   constexpr const char* variable = "TETWRIGHT_FUZZ_TARGET";
   if (const char* before = std::getenv(variable); before && wanted.starts_with('-'))
     for (const Target& target : all_targets())
@@ -52,7 +52,7 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
   }
   ::setenv(variable, (*argv)[1], 1);
   std::memmove(*argv + 1, *argv + 2,
-               static_cast<std::size_t>(*argc - 1) * sizeof **argv);  // with the null at the end
+               static_cast<std::size_t>(*argc - 1) * sizeof **argv);  // including the null at the end
   --*argc;
   return 0;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Fuzzes the operations of the simplifier: the bytes of the input choose a mesh of several materials, then
-// tets and operations on them. After each operation that changed the mesh it must be valid and have its
-// original topology.
+// Fuzzes the operations of the simplifier: the bytes of the input choose a mesh of several materials,
+// followed by tets and operations on them. After each operation that changed it, the mesh must be valid and
+// have its original topology.
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -22,7 +22,7 @@
 namespace tetwright::fuzz {
 namespace {
 
-/// Returns the bytes of the input in turn, then 0.
+/// Returns the bytes of the input one by one, then zeros.
 class Bytes {
  public:
   explicit Bytes(std::string_view bytes) : bytes_(bytes) {}
@@ -50,7 +50,7 @@ TetMesh choose_mesh(Bytes& bytes) {
   return mesh;
 }
 
-/// The live tets as a plain mesh.
+/// Live tets as a plain mesh.
 TetMesh snapshot(const EditableMesh& mesh) {
   TetMesh out;
   std::vector<Index> number(mesh.point_slots(), no_index);

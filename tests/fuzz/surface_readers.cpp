@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Readers of surfaces: each must return a surface whose indices are in range, or throw an InputError. The
-// surface must survive a round trip through a writer. Where points may have fields, reading them must give
+// Fuzzes the readers of surfaces: each must return a surface with indices in range, or throw an InputError.
+// The surface must survive a round trip through a writer. If points may have fields, reading these must give
 // the same surface and fields of the right size.
 #include "common/io/surfaces/3mf.h"
 #include "common/io/surfaces/glb.h"
@@ -33,7 +33,7 @@ void run(std::string_view bytes, Read read, Write write, Read read_back) {
       for (Index v : t) TETWRIGHT_CHECK(v < mesh.points.size());
     const TriangleMesh back = read_back(write(mesh), "fuzz", nullptr);
     TETWRIGHT_CHECK(back.triangles.size() == mesh.triangles.size());
-    // Compared by position, since STL keeps neither the numbers of points nor unused points.
+    // Compared by position, since STL keeps neither point numbers nor unused points.
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
       for (std::size_t k = 0; k < 3; ++k)
         TETWRIGHT_CHECK(back.points[back.triangles[t][k]] == mesh.points[mesh.triangles[t][k]]);
@@ -41,7 +41,7 @@ void run(std::string_view bytes, Read read, Write write, Read read_back) {
   }
 }
 
-/// For formats that are only read: round trip through PLY.
+/// For formats that can only be read: round trip through PLY.
 void run(std::string_view bytes, Read read) { run(bytes, read, write_ply, read_ply); }
 
 void run_fields(std::string_view bytes, ReadWithFields read_with_fields, Read read) {
@@ -57,7 +57,7 @@ void run_fields(std::string_view bytes, ReadWithFields read_with_fields, Read re
   }
 }
 
-/// Reads the bytes as the model in a .3mf: a damaged archive would fail at its checksum.
+/// Reads the bytes as the model in a .3mf file; a damaged archive would fail at its checksum.
 TriangleMesh read_3mf_model(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped) {
   return read_3mf(zip_of({{"_rels/.rels", relationships_of_3mf}, {"3D/a.model", std::string(bytes)}}), name,
                   dropped);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Readers of tet meshes: each must return a mesh whose indices are in range and whose fields have the right
-// sizes, or throw an InputError. The mesh must survive a round trip through a writer, and the functions that
-// work on meshes of other programs must accept it.
+// Fuzzes the readers of tet meshes: each must return a mesh with indices in range and fields of the right
+// size, or throw an InputError. The mesh must survive a round trip through a writer, and functions for meshes
+// of other programs must accept it.
 #include "common/io/tets/abaqus.h"
 #include "common/io/tets/medit.h"
 #include "common/io/tets/medit_binary.h"
@@ -50,7 +50,7 @@ void run(std::string_view bytes, Read read, Write write, Read read_back) {
     TETWRIGHT_CHECK(back.points == mesh.points);
     TETWRIGHT_CHECK(back.tets == mesh.tets);
     TETWRIGHT_CHECK(back.materials == mesh.materials);
-    constexpr std::size_t max_tets = 100;  // limit of meshes for the further functions
+    constexpr std::size_t max_tets = 100;  // maximum size of meshes passed to further functions
     if (mesh.tets.size() >= max_tets) return;
     // A format may change names and components in the first round trip, but not in the second.
     const std::string again = write(back);
@@ -71,7 +71,8 @@ void run(std::string_view bytes, Read read, Write write, Read read_back) {
 /// Round trip through VTU.
 void run(std::string_view bytes, Read read) { run(bytes, read, write_vtu, read_vtu); }
 
-/// Files of points, tets and faces in one text, separated by lines of equal signs; faces may be missing.
+/// Reads files of points, tets and faces from one text, separated by lines of equal signs; faces may be
+/// missing.
 ReadTetMesh read_tetgen_files(std::string_view bytes, const std::string& name, const ReadTetMeshOptions&) {
   constexpr std::string_view between = "=====\n";
   const auto next = [&] {
@@ -86,7 +87,7 @@ ReadTetMesh read_tetgen_files(std::string_view bytes, const std::string& name, c
   return read_tetgen({node, name}, {ele, name}, face);
 }
 
-/// Reads a file with its numbers in the text: there is no other file.
+/// Reads a file whose numbers are in the text, without another file.
 ReadTetMesh read_xdmf_alone(std::string_view bytes, const std::string& name, const ReadTetMeshOptions&) {
   return read_xdmf(bytes, name,
                    [](const std::string& path) -> std::string { throw InputError(path + ": is not there"); });

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Fuzzes the reader of .vdb files: OpenVDB, which trusts all sizes, must get only data that take_apart_vdb()
-// has validated. The result is a surface or a volume, or an InputError.
+// Fuzzes the reader of .vdb files. OpenVDB trusts all sizes, so it must receive only data validated by
+// take_apart_vdb(). The result is a surface or a volume, or an InputError.
 #include <stdexcept>
 
 #include "mesher/distance/openvdb_grids.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Readers of volumes: each must return a volume that satisfies label_volume.h, or throw an InputError. The
-// volume must survive a round trip through the NRRD writer. The file that a header refers to follows a line
-// of equal signs.
+// Fuzzes the readers of volumes: each must return a volume that satisfies label_volume.h, or throw an
+// InputError. The volume must survive a round trip through the NRRD writer. The file to which a header refers
+// follows a line of equal signs.
 #include "common/io/volumes/inr.h"
 #include "common/io/volumes/metaimage.h"
 #include "common/io/volumes/nifti.h"
@@ -16,7 +16,7 @@ namespace {
 using Read = LabelVolume (*)(std::string_view, const std::string&, const FileReader&);
 
 void run(std::string_view bytes, Read read) {
-  constexpr std::size_t max_voxels = 100000;  // limit of volumes that are written
+  constexpr std::size_t max_voxels = 100000;  // maximum size of volumes that are written
   constexpr std::string_view between = "=====\n";
   const std::size_t at = bytes.find(between);
   try {
@@ -39,7 +39,7 @@ void run(std::string_view bytes, Read read) {
   }
 }
 
-/// Reads a format of one file.
+/// Reads a format with a single file.
 LabelVolume read_inr_alone(std::string_view bytes, const std::string& name, const FileReader&) {
   return read_inr(bytes, name);
 }

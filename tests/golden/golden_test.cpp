@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Dense and simplified meshes, compared by hashes that are equal with g++ and clang++, with and without
-// sanitizers. A hash may change only on purpose; the failure prints the new one. Inputs are built-in samples
-// and a scan, the Stanford bunny of Debian's glmark2-data: lattices of our own mesher, where other tests of
-// the simplifier use Kuhn grids.
+// Compares dense and simplified meshes by hashes, which are equal with g++ and clang++, with and without
+// sanitizers. A hash may change only on purpose; a failure prints the new one. Inputs are built-in samples
+// and a scan, the Stanford bunny of Debian's glmark2-data: meshes from Tetwright's own mesher, while other
+// tests of the simplifier use Kuhn grids.
 #include <gtest/gtest.h>
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Reads files of tetwright with meshio and Gmsh, and compares points, tets, materials, surfaces and their names.
+"""Reads files written by tetwright with meshio and Gmsh, and compares points, tets, materials, surfaces and their
+names.
 
 usage: read_back.py TETWRIGHT    (Debian's python3 with meshio, h5py and numpy, and gmsh)
 """
@@ -13,7 +14,7 @@ import meshio
 import numpy as np
 
 TETWRIGHT = sys.argv[1]
-# Format: file, names of materials, names of surfaces (or none), as meshio sees them.
+# Format: file, names of materials, names of surfaces (or none), as read by meshio.
 FORMATS = {
     "vtu": "m.vtu",
     "vtk": "m.vtk",
@@ -28,7 +29,7 @@ FORMATS = {
     "xdmf": "m.xdmf",
 }
 SECOND_ORDER = {"vtu", "vtk", "msh22", "msh41", "msh41-binary", "abaqus", "nastran", "xdmf"}
-# Maximum difference of coordinates: formats of solvers have few characters for them, and round.
+# Maximum difference of coordinates: formats of solvers have few characters for them, so they are rounded.
 TOLERANCE = {"abaqus": 1e-14, "nastran": 1e-9}
 failures = []
 
@@ -44,13 +45,13 @@ def run(*arguments):
 
 
 def decoded(field):
-    """Names in VTK's field data: lines of a number, a tab and a name."""
+    """Decodes names in VTK's field data: lines with a number, a tab and a name."""
     lines = bytes(np.asarray(field, dtype=np.uint8)).decode().splitlines()
     return dict(line.split("\t")[::-1] for line in lines)
 
 
 def names_of(format_name, mesh):
-    """Names of materials and surfaces, each with its number of elements."""
+    """Returns the names of materials and surfaces, each with its number of elements."""
     count = {}
     if format_name in ("msh22", "msh41", "msh41-binary"):
         for name, (number, dimension) in mesh.field_data.items():
@@ -153,7 +154,7 @@ def saved_again_by_gmsh(file, format_name, names):
 
 
 def outside_is_kept_by_gmsh(folder):
-    """A mesh with its surroundings, whose tag 0 cannot be the number of a group in Gmsh."""
+    """Checks a mesh with its outside, whose tag 0 cannot be a group number in Gmsh."""
     surface = folder / "cube.ply"
     run("sample", "cube", "-o", surface)
     mesh = folder / "outside.msh"

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Checks every #include of common/, mesher/ and simplify/ against the order of folders that their READMEs promise.
+"""Checks every #include of common/, mesher/ and simplify/ against the order of folders given in their READMEs.
 
-A README says "Folders include each other in this order only: `a` < `b` < the files in this folder.", of its own folder, or
-"Folders of `io/` include ..." of one in it. Prints what breaks a rule; status 1 if something does.
+A README states "Folders include each other in this order only: `a` < `b` < the files in this folder." for its own
+folder, or "Folders of `io/` include ..." for a subfolder. Prints the violations; status 1 if there are any.
 """
 import pathlib
 import re
@@ -11,13 +11,13 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-# What the files of a folder may include of ours.
+# Folders of the project that the files of a folder may include.
 ALLOWED = {
     "common": ("common",),
     "simplify": ("simplify", "common"),
     "mesher": ("mesher", "common"),
 }
-# Only here; the programs and tests on top of the libraries may include what they want.
+# Allowed only here; the programs and tests on top of the libraries may include anything.
 FOLDERS_OF_LIBRARIES = {
     "common/io": ("hdf5.h", "libdeflate.h", "lz4.h", "lzma.h", "nlohmann/", "pugixml.hpp", "zip.h", "zlib.h"),
 }
@@ -31,7 +31,8 @@ OPENVDB_TYPES = "mesher/distance/openvdb_types.h"
 
 
 def orders():
-    """For each folder with an order: its folders from the lowest on; "" stands for the files in itself."""
+    """Returns for each folder with an order its subfolders, lowest first; "" stands for the files in the folder
+    itself."""
     found = {}
     for top in ALLOWED:
         text = (ROOT / top / "README.md").read_text(encoding="utf-8")
@@ -44,7 +45,7 @@ def orders():
 
 
 def rank(path, top, order):
-    """The place of a file's folder in the order of `top`; None where the order does not know it."""
+    """Returns the position of a file's folder in the order of `top`; None if the order does not contain it."""
     inner = path[len(top) + 1:]
     folder = inner.split("/")[0] if "/" in inner else ""
     return order.index(folder) if folder in order else None
@@ -70,7 +71,7 @@ def check_own(path, number, included, all_orders):
     if included == OPENVDB_TYPES and path not in FILES_OF_LIBRARIES["openvdb/"]:
         yield f"{path}:{number}: OpenVDB's headers are for {' '.join(FILES_OF_LIBRARIES['openvdb/'])}"
     if "/include/tetwright/" in path + included:
-        return  # public headers are of all folders of their library
+        return  # public headers belong to all folders of their library
     for folder, order in all_orders.items():
         if not (path.startswith(folder + "/") and included.startswith(folder + "/")):
             continue

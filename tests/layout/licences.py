@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Checks that every source file begins with the SPDX line of its licence, scripts after "#!". Status 1 if one does not."""
+"""Checks that every source file begins with the SPDX line of its licence, in scripts after "#!". Status 1 if one does
+not."""
 import os
 import pathlib
 import sys

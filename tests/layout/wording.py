@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Checks the comments of C++ sources for openings that have to be read twice, names for words that the field does not use,
-and tests for skips. Status 1 if one is found."""
+"""Checks C++ sources for comments with openings that have to be read twice, names that use unusual words instead of
+the terms of the field, and skipped tests. Status 1 if one is found."""
 import pathlib
 import re
 import sys
@@ -16,7 +16,7 @@ RULES = (
 
 
 def opens_sentence(lines, number):
-    """Whether a comment's line begins a sentence, and does not go on with that of the line before."""
+    """Returns whether a line of a comment begins a sentence, rather than continuing that of the previous line."""
     before = lines[number - 1].strip() if number > 0 else ""
     return not before.startswith("//") or before.rstrip().endswith((".", ":", ";", "//", "///", "?", "!"))
 

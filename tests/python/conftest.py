@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A test that is skipped is a failure: tools/setup test installs all that these tests need."""
+"""Makes a skipped test a failure: tools/setup test installs everything that these tests need."""
 
 
 def pytest_sessionfinish(session, exitstatus):

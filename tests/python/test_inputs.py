@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the Python package takes as input and what it refuses: cells, names, options, files, on cubes."""
+"""Tests the inputs that the Python package accepts and rejects: cells, names, options, files, on cubes."""
 import json
 import os
 import types
@@ -23,7 +23,7 @@ def cube_mesh():
 
 
 def tets_of_two_kinds(**data):
-    """Two tets of a cube's corners, as meshio's mesh."""
+    """Returns two tets of a cube's corners as a meshio mesh."""
     return meshio.Mesh(CUBE_POINTS, [("tetra", TWO_TETS)], **data)
 
 
@@ -98,7 +98,7 @@ def test_fields_and_groups_of_objects_are_kept_or_noted():
     mesh = tets_of_two_kinds(cell_data=data, point_data={"depth": np.arange(8.0)},
                              cell_sets={"hard": [np.array([0])]})
     made = tetwright.improve(mesh, fix_boundary=True)
-    # As from a file, the only field of whole numbers is the material.
+    # As in a file, the only field of whole numbers is the material.
     assert set(made.materials.tolist()) == {4, 9} and made.stats["input"]["material_field"] == "domain"
     assert set(made.fields) == {"heat"} and set(made.point_fields) == {"depth"}
     assert '1 fields of cells ("text") (dropped)' in made.notes[0] and '1 sets of cells ("hard")' in made.notes[0]
@@ -121,7 +121,7 @@ def test_fields_and_groups_of_objects_are_kept_or_noted():
 
 
 def outer_triangles(mesh, groups):
-    """The boundary of a mesh as cells of meshio, with a group for each triangle."""
+    """Returns the boundary of a mesh as meshio cells, with a group for each triangle."""
     return [("tetra", mesh.tets), ("triangle", mesh.interfaces.triangles)], [np.ones(len(mesh.tets), int), groups]
 
 
@@ -138,15 +138,15 @@ def test_groups_of_faces_are_patches(cube_mesh, tmp_path):
                         field_data={"wall": np.array([5, 2])})
     made = tetwright.improve(named)
     of_set = tetwright.improve(meshio.Mesh(cube_mesh.points, cells, cell_sets={"wall": [None, np.flatnonzero(top)]}))
-    named.write(tmp_path / "named.msh", file_format="gmsh22")  # as the program reads it
+    named.write(tmp_path / "named.msh", file_format="gmsh22")  # a format that the program reads
     for mesh in made, of_set, tetwright.improve(tmp_path / "named.msh"):
         assert names_of_surfaces(mesh) == {"wall", "material_1|outside"} and "(dropped)" not in str(mesh.notes)
         on_wall = np.array([mesh.interfaces.group_names[g] == "wall" for g in mesh.interfaces.group.tolist()])
         assert (mesh.points[mesh.interfaces.triangles[on_wall]][:, :, 2] > 0.99).all() and on_wall.any()
-    # From one program to the next.
+    # From one call to the next.
     again = tetwright.improve(made.to_meshio())
     assert names_of_surfaces(again) == names_of_surfaces(made) and "(dropped)" not in str(again.notes)
-    # A triangle within the mesh is the surface of nothing.
+    # A triangle inside the mesh is not on a surface.
     cells[1] = ("triangle", np.vstack([cells[1][1], cube_mesh.tets[:1, :3]]))
     groups[1] = np.append(groups[1], 5)
     note = tetwright.improve(meshio.Mesh(cube_mesh.points, cells, cell_data={"medit:ref": groups})).notes[0]
@@ -154,7 +154,7 @@ def test_groups_of_faces_are_patches(cube_mesh, tmp_path):
 
 
 def test_groups_of_surfaces_are_patches():
-    # Two triangles of each side; the fan of a polygon is of one group.
+    # Two triangles on each side; the fan of a polygon belongs to a single group.
     sides = np.repeat(np.arange(6), 2)
     names = {"wall": np.array([3, 2])}
     labelled = meshio.Mesh(CUBE_POINTS, [("triangle", CUBE_TRIANGLES)], cell_data={"gmsh:physical": [sides]},
@@ -207,14 +207,14 @@ def test_sets_of_cells_are_patches_or_noted(cube_mesh, tmp_path):
 
     def improved(**more):
         return tetwright.improve(meshio.Mesh(cube_mesh.points, more.pop("cells", cells), **more))
-    # A set may be called like a material, and a smaller one is not lost to one of all.
+    # A set may have the name of a material, and a set of all faces does not absorb a smaller one.
     named = improved(cell_data={"gmsh:physical": [np.ones(len(cube_mesh.tets), int), np.zeros(len(triangles), int)]},
                      field_data={"bone": np.array([1, 3]), "rest": np.array([7, 2])},
                      cell_sets={"all": [None, np.arange(len(triangles))], "bone": [np.array([0]), top]})
     assert names_of_surfaces(named) == {"all", "bone"} and named.material_names == {1: "bone"}
     assert f"{len(top)} faces of sets that are in a group already (dropped)" in named.notes[0]
     assert 'names of physical groups of faces, lines or points ("rest") (dropped)' in named.notes[0]
-    # To meshio and back, with a set more, or through a file.
+    # To meshio and back, with an additional set, or through a file.
     handed_on = named.to_meshio()
     handed_on.write(tmp_path / "m.msh", file_format="gmsh22")
     again = tetwright.improve(tmp_path / "m.msh")
@@ -222,7 +222,7 @@ def test_sets_of_cells_are_patches_or_noted(cube_mesh, tmp_path):
     plain = improved().to_meshio()
     plain.cell_sets["lid"] = [None, (plain.points[plain.cells[1].data][:, :, 2] > 0.99).all(axis=1)]
     assert names_of_surfaces(tetwright.improve(plain)) == {"lid", "material_1|outside"}
-    # Shells, tets in sets, and numbers that are none.
+    # Shells, tets in sets, and invalid numbers.
     shells = [*cells, ("triangle", np.array([[0, 1, 2], [1, 2, 3]]) * (len(cube_mesh.points) // 4))]
     made = improved(cells=shells, cell_sets={"shell": [np.array([3]), None, np.array([0, 1])]})
     assert "2 triangles of sets that are no faces of a tet (dropped)" in made.notes[0]
@@ -355,7 +355,7 @@ def test_names_of_files_are_whole(tmp_path, cube_mesh, monkeypatch):
         with pytest.raises(tetwright.UsageError):
             tetwright.prepare(CUBE, target_tets=300, output=name)
     assert not list(tmp_path.iterdir())
-    # Linux' names of files are bytes, and need not be UTF-8.
+    # File names on Linux are bytes, and need not be UTF-8.
     strange = os.fsdecode(b"n\xff.vtu")
     cube_mesh.write(strange)
     assert len(tetwright.read(strange).tets) == len(cube_mesh.tets)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The Python package beside the program: the same bytes, views without copies, errors, cancelling, threads."""
+"""Compares the Python package with the program: the same bytes, views without copies, errors, cancellation, threads."""
 import os
 import pathlib
 import shutil
@@ -57,7 +57,7 @@ def test_gives_the_bytes_of_the_program(tmp_path, ball, ball_arrays, prepared):
     expected = (tmp_path / "program.vtu").read_bytes()
     prepared.write(tmp_path / "python.vtu")
     assert (tmp_path / "python.vtu").read_bytes() == expected
-    # Arrays instead of a file, under the file's name, on one thread.
+    # Arrays instead of a file, with the file's name, on one thread.
     tetwright.prepare({"ball": ball_arrays}, target_tets=800, threads=1).write(tmp_path / "arrays.vtu")
     assert (tmp_path / "arrays.vtu").read_bytes() == expected
     # Written by the call.
@@ -94,7 +94,7 @@ def test_images_of_nibabel(tmp_path):
     made = nibabel.Nifti1Image(labels.astype(np.uint8), affine)
     nibabel.save(made, tmp_path / "v.nii.gz")
     expected = tetwright.prepare(labels, affine=affine, target_tets=900)
-    # In memory, with its numbers still in the file, and by our own reader.
+    # In memory, loaded on demand from the file, and by Tetwright's own reader.
     for image in (made, nibabel.load(tmp_path / "v.nii.gz"), tmp_path / "v.nii.gz"):
         mesh = tetwright.prepare(image, target_tets=900)
         assert np.array_equal(mesh.points, expected.points) and np.array_equal(mesh.tets, expected.tets)
@@ -176,7 +176,7 @@ def test_size_fields_are_files_arrays_or_meshes(tmp_path, ball):
     assert by_file.stats["edge_lengths"]["field"] == "size"
     for field in (corners, tets, lengths), grid:
         assert np.array_equal(tetwright.simplify(dense, size_field=field).points, by_file.points)
-    # Of the points of a surface, from which lengths grow.
+    # Lengths at the points of a surface, growing away from it.
     surface = meshio.read(ball)
     assert tetwright.simplify(dense, size_field=(surface.points, surface.cells_dict["triangle"],
                                                  np.full(len(surface.points), 0.5))).stats["edge_lengths"]["edges"]
@@ -280,7 +280,7 @@ def test_calls_run_side_by_side(ball, prepared):
     for worker in workers:
         worker.start()
     while any(worker.is_alive() for worker in workers):
-        ticks += 1  # the interpreter is free
+        ticks += 1  # the interpreter's lock is released
         time.sleep(0.001)
     assert ticks > 5
     for mesh in results.values():
@@ -303,7 +303,7 @@ def test_the_example_runs(tmp_path, ball):
 
 
 def test_pip_installs_it(tmp_path):
-    # From a copy of what is needed: setuptools writes beside its sources.
+    # From a copy of the required files, since setuptools writes into its source folder.
     root = pathlib.Path(os.environ["TETWRIGHT_SOURCE"])
     copy = tmp_path / "source"
     (copy / "tools").mkdir(parents=True)
@@ -323,8 +323,8 @@ def test_pip_installs_it(tmp_path):
 
 
 def check_linkage(module):
-    """As auditwheel would: all of ours is within the module, it looks for libraries in no folder of the build, and
-    the others are those that Debian has."""
+    """Checks linkage as auditwheel would: Tetwright's code is entirely within the module, no folder of the build is
+    searched for libraries, and all other libraries are Debian's."""
     listing = subprocess.run(["readelf", "-d", module], capture_output=True, text=True, check=True).stdout
     assert "RPATH" not in listing and "RUNPATH" not in listing, listing
     needed = {line.split("[lib")[1].split(".so")[0].split("-")[0] for line in listing.splitlines() if "(NEEDED)" in line and "[lib" in line}
@@ -347,8 +347,8 @@ def test_meshio_reads_the_fields_of_every_format_that_has_them(tmp_path, order):
     def by_place(places, values):
         return {tuple(np.round(p, 9)): v for p, v in zip(np.asarray(places), np.asarray(values, float).ravel().tolist())}
     expected = {name: by_place(made.points[made.tets].mean(axis=1), made.fields[name]) for name in ("id", "E")}
-    # Of msh22 it splits the fields of several kinds of cells at the wrong places, of binary files it wants the cells in
-    # the order of their numbers.
+    # In msh22 files it splits the fields of several kinds of cells at the wrong positions; in binary files it requires
+    # the cells in the order of their numbers.
     for name, output_format, alone in (("m.vtu", "", False), ("m.vtk", "", False), ("m.xdmf", "", False),
                                        ("a.msh", "msh22", True), ("b.msh", "msh41", False)):
         made.write(tmp_path / name, output_format=output_format, no_boundary=alone)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Tests the parts of tools/python/wheel that need no build of their own; tools/python/try_wheel tries whole wheels."""
+"""Tests the parts of tools/python/wheel that need no separate build; tools/python/try_wheel tests complete wheels."""
 import base64
 import hashlib
 import os
@@ -42,7 +42,7 @@ def test_libraries_are_known_without_their_versions(file, stem):
 
 
 def test_a_program_that_takes_more_than_a_wheel_may_have_is_refused(tmp_path):
-    program = os.environ["TETWRIGHT_PROGRAM"]  # with Debian's HDF5, which has a driver for files in the network
+    program = os.environ["TETWRIGHT_PROGRAM"]  # with Debian's HDF5, which has a driver for files on the network
     libraries = wheel_contents.needed_libraries(program, tmp_path)
     assert not {"libc.so.6", "libstdc++.so.6"} & set(libraries)
     with pytest.raises(SystemExit, match="must not have inside"):

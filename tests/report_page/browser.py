@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Drives a headless Chromium by its debugging protocol over pipes, with nothing but the standard library."""
+"""Controls a headless Chromium through its debugging protocol over pipes, with only the standard library."""
 import base64
 import json
 import os
@@ -20,12 +20,12 @@ ARGUMENTS = [
 
 
 def executable():
-    """The path of Chromium, or None."""
+    """Returns the path of Chromium, or None."""
     return shutil.which("chromium") or shutil.which("chromium-browser")
 
 
 class Browser:
-    """A browser with one tab. Use it as a context, which ends it and removes its profile."""
+    """A browser with one tab. Use it as a context manager, which ends it and removes its profile."""
 
     def __init__(self, width=900, height=700, webgl=True):
         self._profile = tempfile.mkdtemp(prefix="tetwright-browser-")
@@ -33,7 +33,7 @@ class Browser:
         self._answers, write_answers = os.pipe()
 
         def to_three_and_four():
-            # By way of numbers that neither is, since one pipe may already be the other's number.
+            # Through unused numbers, since one pipe may already have the number of the other.
             commands, answers = os.dup(read_commands), os.dup(write_answers)
             os.dup2(commands, 3)
             os.dup2(answers, 4)
@@ -66,7 +66,7 @@ class Browser:
             self._session = None
             self.call("Browser.close")
             self._process.wait(20)
-        except Exception:  # it may be gone before it answers
+        except Exception:  # it may end before it answers
             self._process.kill()
             self._process.wait()
         os.close(self._commands)
@@ -74,7 +74,7 @@ class Browser:
         shutil.rmtree(self._profile, ignore_errors=True)
 
     def prefer(self, dark):
-        """What the user would like: dark colours or light ones, and always no motion."""
+        """Sets the user's preferences: dark or light colours, and never any motion."""
         self.call("Emulation.setEmulatedMedia", features=[
             {"name": "prefers-color-scheme", "value": "dark" if dark else "light"},
             {"name": "prefers-reduced-motion", "value": "reduce"}])
@@ -123,7 +123,7 @@ class Browser:
                 self.complaints.append("request of " + url)
 
     def open(self, path, state=""):
-        """Opens a file, with the part of its address behind #, and waits until it has been drawn."""
+        """Opens a file, with the part of its address after #, and waits until it has been drawn."""
         self.complaints = []
         self.call("Page.navigate", url="about:blank")
         self.call("Page.navigate", url="file://" + os.path.abspath(path) + ("#" + state if state else ""))
@@ -131,11 +131,11 @@ class Browser:
         self.settle()
 
     def settle(self):
-        """Waits until what was changed has been drawn."""
+        """Waits until changes have been drawn."""
         self.run("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(() => done(true))))")
 
     def run(self, script):
-        """The value of an expression in the page; of a promise, what it becomes."""
+        """Returns the value of an expression in the page, or the result of a promise."""
         result = self.call("Runtime.evaluate", expression=script, awaitPromise=True, returnByValue=True)
         if "exceptionDetails" in result:
             raise RuntimeError(f"{script}: {result['exceptionDetails']}")
@@ -150,7 +150,7 @@ class Browser:
         raise TimeoutError(condition)
 
     def screenshot(self, selector=None):
-        """A PNG of what is seen, or of one element."""
+        """Returns a PNG of the visible page, or of one element."""
         clip = {}
         if selector:
             box = self.run(f"(r => [r.x + scrollX, r.y + scrollY, r.width, r.height])"
@@ -160,7 +160,7 @@ class Browser:
 
 
 def pixels(png):
-    """Width, height and rows of (r, g, b) bytes of a PNG with 8 bits a channel and no interlacing."""
+    """Returns width, height and rows of (r, g, b) bytes of a PNG with 8 bits per channel and without interlacing."""
     assert png[:8] == b"\x89PNG\r\n\x1a\n"
     at, data = 8, b""
     width = height = channels = 0
@@ -205,7 +205,7 @@ def unfiltered(kind, row, above, channels):
 
 
 def to_png(width, height, rows):
-    """A PNG of rows of (r, g, b) bytes."""
+    """Encodes rows of (r, g, b) bytes as a PNG."""
     def chunk(kind, content):
         return struct.pack(">I", len(content)) + kind + content + struct.pack(">I", zlib.crc32(kind + content))
     data = zlib.compress(b"".join(b"\0" + row for row in rows), 9)

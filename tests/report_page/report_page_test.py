@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The page of --report in a headless Chromium: what it draws and what its controls change.
+"""Tests the page of --report in a headless Chromium: what it draws, and the effects of its controls.
 
     report_page_test.py TETWRIGHT [--accept] [TEST...]
 
---accept replaces the reference picture by what is drawn now.
+--accept replaces the reference picture by the current one.
 """
 import json
 import os
@@ -20,12 +20,12 @@ REFERENCE = os.path.join(FOLDER, "reference.png")
 PROGRAM = ""
 ACCEPT = False
 
-# The canvas alone, small enough for a reference picture.
+# Size of the canvas, small enough for a reference picture.
 PICTURE_WIDTH, PICTURE_HEIGHT = 760, 420
 
 
 def tetwright(*arguments):
-    """Runs the program; short of what was asked is as good as done."""
+    """Runs the program; an unmet request counts as success."""
     done = subprocess.run([PROGRAM, *map(str, arguments), "--quiet"], capture_output=True, text=True)
     if done.returncode > 1:
         raise AssertionError(f"{arguments}: {done.stderr}")
@@ -33,7 +33,7 @@ def tetwright(*arguments):
 
 
 class Pages:
-    """The pages that tests look at, each made when it is first asked for."""
+    """Pages used by tests, each created when it is first requested."""
 
     def __init__(self, folder):
         self._folder = folder
@@ -49,7 +49,7 @@ class Pages:
         return self._made[name]
 
     def simplified(self):
-        """A tet mesh of four materials, made smaller: there are histograms before and after."""
+        """A simplified tet mesh of four materials: has histograms before and after."""
         def make(page):
             tetwright("sample", "layers", "-o", self.path("before.vtu"))
             tetwright("simplify", self.path("before.vtu"), "-o", self.path("after.vtu"), "--target-tets", 2000,
@@ -57,7 +57,7 @@ class Pages:
         return self._page("simplified.html", make)
 
     def open_sphere(self):
-        """A surface with a hole, which is found and has a place."""
+        """A surface with a hole, which is found and located."""
         def make(page):
             tetwright("sample", "open_sphere", "-o", self.path("open.ply"))
             tetwright("prepare", self.path("open.ply"), "-o", self.path("open.vtu"), "--target-tets", 2000,
@@ -65,7 +65,7 @@ class Pages:
         return self._page("open.html", make)
 
     def layers(self):
-        """A tet mesh that never changes: what the reference picture shows."""
+        """A tet mesh that never changes; the reference picture shows it."""
         def make(page):
             tetwright("sample", "layers", "-o", self.path("layers.vtu"))
             tetwright("check", self.path("layers.vtu"), "--report", page)
@@ -97,7 +97,7 @@ class PageTest(unittest.TestCase):
         return self.browser.run("tetwright_page.drawn")
 
     def picture(self):
-        """The number of a copy of the canvas's pixels, which stays in the page."""
+        """Copies the canvas's pixels within the page; returns the number of the copy."""
         return self.browser.run("""(() => {
           const gl = tetwright_page.view.renderer.getContext();
           const size = gl.drawingBufferWidth * gl.drawingBufferHeight, bytes = new Uint8Array(4 * size);
@@ -106,16 +106,16 @@ class PageTest(unittest.TestCase):
         })()""")
 
     def covered(self):
-        """The share of the canvas that is not background, as its corner is."""
+        """Returns the fraction of the canvas that differs from the background in its corner."""
         return self.browser.run(f"(p => p.filter(pixel => pixel !== p[0]).length / p.length)(pictures[{self.picture()}])")
 
     def changed(self, before, after):
-        """The share of the pixels that differ."""
+        """Returns the fraction of the pixels that differ."""
         return self.browser.run(f"((a, b) => a.filter((pixel, i) => pixel !== b[i]).length / a.length)"
                                 f"(pictures[{before}], pictures[{after}])")
 
     def set(self, element, value):
-        """Sets a control as its user would."""
+        """Sets a control as a user would."""
         self.browser.run(
             f"(e => {{ if (e.type === 'checkbox' || e.type === 'radio') e.checked = {json.dumps(value)};"
             f" else e.value = {json.dumps(value)};"
@@ -139,12 +139,12 @@ class PageTest(unittest.TestCase):
         self.set("#cut", "0.25")
         self.assertNotEqual(self.drawn(), half)
         self.assertGreater(self.changed(cut, self.picture()), 0.02)
-        # All of a tet or nothing: at either end there is all of the mesh, or none of it.
+        # Tets are drawn entirely or not at all: at one end the whole mesh is drawn, at the other nothing.
         self.set("#cut", "1")
         self.assertEqual(self.drawn(), whole)
         self.set("#flip", True)
         self.assertEqual(self.drawn(), 0)
-        # What is drawn is closed: each edge has an even number of triangles.
+        # The drawn surface is closed: each edge has an even number of triangles.
         self.set("#flip", False)
         self.set("#cut", "0.4")
         self.assertEqual(self.browser.run("""(() => {
@@ -182,7 +182,7 @@ class PageTest(unittest.TestCase):
             now = self.picture()
             self.assertGreater(self.changed(last, now), 0.05)
             last = now
-        # A mesh that was read has no surface to be compared with.
+        # A mesh that was read has no surface to compare it with.
         self.open(self.pages.layers())
         self.assertNotIn("distance", self.browser.run("[...document.getElementById('colour').options].map(o => o.value)"))
 
@@ -195,7 +195,7 @@ class PageTest(unittest.TestCase):
         self.browser.settle()
         target = self.browser.run("tetwright_page.view.look.target")
         self.assertGreater(sum(c * c for c in target), 0.1)
-        # Its mark is in the middle of the view.
+        # The mark of the location is in the middle of the view.
         x, y = self.browser.run("(m => { const r = m.getBoundingClientRect(), v = document.getElementById('view')"
                                 ".getBoundingClientRect(); return [(r.x + r.width / 2 - v.x) / v.width,"
                                 " (r.y + r.height / 2 - v.y) / v.height]; })(document.querySelector('#marks .mark'))")
@@ -280,7 +280,7 @@ class PageTest(unittest.TestCase):
         with open(REFERENCE, "rb") as file:
             expected = browser.pixels(file.read())
         self.assertEqual((width, height), expected[:2])
-        # Edges may be a pixel elsewhere with another version of the browser, faces may not.
+        # With another version of the browser edges may move by a pixel, faces may not.
         tolerance, max_share = 24, 0.03
         off = sum(max(abs(a - b) for a, b in zip(one[i:i + 3], two[i:i + 3])) > tolerance
                   for one, two in zip(rows, expected[2]) for i in range(0, len(one), 3))

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs CalculiX on meshes that tetwright made and compares with closed forms.
+"""Runs CalculiX on tetwright's meshes and compares with closed-form solutions.
 
 usage: calculix.py TETWRIGHT [--quick]    (Debian's calculix-ccx and python3-numpy; --quick: the coarser meshes)
 
-A cantilever under its own weight and its first bending mode, and a thick sphere under inner pressure: linear and
+A cantilever under its own weight, its first bending mode, and a thick sphere under internal pressure, with linear and
 ten-node tets, on meshes of two sizes; the errors must decrease with the size.
 """
 import argparse
@@ -63,7 +63,7 @@ def solve(folder, name, deck):
 
 
 def table(text, columns):
-    """Rows of numbers in a .dat file."""
+    """Returns the rows of numbers in a .dat file."""
     rows = []
     for line in text.splitlines():
         words = line.split()
@@ -87,9 +87,9 @@ def nodes_of(file):
 
 def cantilever(folder):
     length, side, young, density, gravity = 10.0, 1.0, 1000.0, 1e-3, 1.0
-    area, inertia, shear = side**2, side**4 / 12, young / 2  # no Poisson's ratio: the root may be clamped
+    area, inertia, shear = side**2, side**4 / 12, young / 2  # Poisson's ratio 0, so that the root can be clamped
     weight = density * area * gravity
-    # Timoshenko: bending and, with the coefficient 5/6 of a square, shear.
+    # Timoshenko: bending, and shear with the coefficient 5/6 of a square.
     sag = weight * length**4 / (8 * young * inertia) + weight * length**2 / (2 * 5 / 6 * shear * area)
     frequency = 1.875104**2 / (2 * math.pi) * math.sqrt(young * inertia / (density * area * length**4))
     surface = beam(folder / "beam.obj", length, side)
@@ -153,8 +153,8 @@ def pressurised_sphere(folder):
     sizes = sorted({tets for _, tets in errors})
     check("sphere: ten-node tets are within 1 % of the closed form", errors[2, sizes[-1]] < 0.01)
     check("sphere: linear tets converge", errors[1, sizes[-1]] < 0.6 * errors[1, sizes[0]])
-    # Displacements converge with the square of the size of linear tets and with the cube of that of ten-node ones; with
-    # a tet or two across the wall not yet quite.
+    # Displacements converge with the square of the size for linear tets and with the cube for ten-node tets; the
+    # rates are lower with only one or two tets across the wall.
     for order, least in ((1, 1.2 if options.quick else 1.5), (2, 2.0 if options.quick else 2.3)):
         coarse, fine = sizes[-2:]
         rate = math.log(errors[order, coarse] / errors[order, fine]) / math.log((fine / coarse) ** (1 / 3))

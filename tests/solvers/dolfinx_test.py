@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs dolfinx on meshes that tetwright made, with their materials and surfaces by name, and compares with closed forms.
+"""Runs dolfinx on tetwright's meshes, with their named materials and surfaces, and compares with closed-form solutions.
 
 usage: dolfinx_test.py TETWRIGHT [--quick]    (Debian's python3-dolfinx; status 77, with the reason, where it is missing;
                                                --quick: the coarser meshes)
 
-Heat in a ball of two conductivities, a cantilever with a load on its tip, and a thick sphere under inner pressure,
+Heat in a ball of two conductivities, a cantilever with a load on its tip, and a thick sphere under internal pressure,
 each on meshes of two sizes; the errors must decrease at the rates of the elements.
 """
 import argparse
@@ -19,7 +19,7 @@ import xml.etree.ElementTree
 
 SKIPPED = 77  # CTest's status of a skipped test
 try:
-    # Threads of the linear algebra would only slow each other down on meshes this small.
+    # Threads of the linear algebra would only slow each other down on such small meshes.
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     import dolfinx
     import numpy as np
@@ -35,13 +35,13 @@ except ImportError as reason:
 from surfaces import beam, spheres
 
 DIRECT = {"ksp_type": "preonly", "pc_type": "lu", "pc_factor_mat_solver_type": "mumps"}
-# Tolerance of the residual; discretisation errors are larger by many orders.
+# Tolerance of the residual; discretisation errors are larger by many orders of magnitude.
 ITERATIVE = {"ksp_type": "cg", "pc_type": "jacobi", "ksp_rtol": 1e-10, "ksp_error_if_not_converged": True}
-# Compiling takes longer than these small problems: without optimisation half as long.
+# Compilation takes longer than these small problems; without optimisation it takes half as long.
 COMPILED = {"cffi_extra_compile_args": ["-O0", "-g0"]}
 # Exact for squares of elements of order 2; the degree estimated for a closed form would exhaust memory.
 QUADRATURE = {"quadrature_degree": 4}
-# Over the edge of the regular tet of the mean volume.
+# Relative to the edge of the regular tet with the mean volume.
 LONGEST_EDGE = 1.6
 failures = []
 
@@ -53,7 +53,7 @@ def check(what, good):
 
 
 class Body:
-    """A mesh with the tags of its tets and of the triangles on its surfaces, and their numbers by name."""
+    """A mesh with tags of its tets and of the triangles on its surfaces, and the tags by name."""
 
     def __init__(self, path):
         facets = path.with_name(path.stem + "_facets.xdmf")
@@ -79,7 +79,7 @@ class Body:
 
 
 def names_of(path):
-    """Numbers of the names in a file, from the document in an Information element, as meshio writes it."""
+    """Returns the numbers of names in a file, from the document in an Information element as written by meshio."""
     numbers = {}
     for information in xml.etree.ElementTree.parse(path).iter("Information"):
         for entry in xml.etree.ElementTree.fromstring(information.text):
@@ -88,13 +88,13 @@ def names_of(path):
 
 
 def prepare(name, tets, volume, surface, *more):
-    """A mesh of tets of nearly uniform size, so that errors decrease with it."""
+    """Returns a mesh of tets of nearly uniform size, so that errors decrease with the size."""
     out = surface.with_name(f"{name}_{tets}.xdmf")
     regular_edge = (6 * math.sqrt(2) * volume / tets) ** (1 / 3)
     call = [options.tetwright, "prepare", surface, "-o", out, "--target-tets", str(tets), "--max-edge",
             repr(LONGEST_EDGE * regular_edge), "--quiet", "--no-progress", *more]
     answer = subprocess.run(call, check=False, capture_output=True, text=True)
-    # 1: short of something requested; the errors show the mesh's quality.
+    # 1: a request was not met; the errors show the mesh's quality.
     if answer.returncode not in (0, 1):
         sys.exit(f"tetwright: {answer.stderr}")
     return Body(out)
@@ -113,7 +113,7 @@ def linear_problem(matrix, right_side, conditions, solver):
 
 
 def rate(counts, errors):
-    """Order of convergence in the edge length, from the first mesh to the last."""
+    """Returns the order of convergence in the edge length, from the first mesh to the last."""
     return math.log(errors[0] / errors[-1]) / math.log((counts[-1] / counts[0]) ** (1 / 3))
 
 
@@ -125,7 +125,7 @@ def check_rates(what, counts, errors, energy_errors):
 
 
 def ball_of_two_conductivities(folder, sizes):
-    """A core in a shell, the same source in both, and 0 on the outside."""
+    """Solves for heat in a core and a shell with the same source, and 0 on the outside."""
     outer, inner, shell, core, source = 1.0, 0.5, 1.0, 5.0, 6.0
     shell_surface, core_surface = spheres(folder / "shell.obj", outer, parts=60), spheres(folder / "core.obj", inner, parts=60)
     counts, errors, energy_errors = [], [], []
@@ -164,9 +164,9 @@ def stress(u, young, poisson):
 
 
 def cantilever(folder, sizes):
-    """A force on the tip, which bends and shears the beam."""
+    """Solves for a force on the tip, which bends and shears the beam."""
     length, side, young, force = 10.0, 1.0, 1000.0, 1.0
-    inertia, area, shear = side**4 / 12, side**2, young / 2  # no Poisson's ratio: the root may be clamped
+    inertia, area, shear = side**4 / 12, side**2, young / 2  # Poisson's ratio 0, so that the root can be clamped
     # Timoshenko, with the coefficient 5/6 of a square.
     sag = force * length**3 / (3 * young * inertia) + force * length / (5 / 6 * shear * area)
     surface = beam(folder / "beam.obj", length, side)
@@ -191,7 +191,7 @@ def cantilever(folder, sizes):
 
 
 def rigid_motions(space):
-    """The six rigid motions as vectors of the space's unknowns, one column each."""
+    """Returns the six rigid motions as vectors of the space's unknowns, one column each."""
     places = space.tabulate_dof_coordinates()
     columns = [np.tile(np.eye(3)[axis], (len(places), 1)) for axis in range(3)]
     columns += [np.cross(np.eye(3)[axis], places) for axis in range(3)]
@@ -199,7 +199,7 @@ def rigid_motions(space):
 
 
 def without_rigid_motions(problem, motions):
-    """Solution of a problem without supports, free of rigid motions."""
+    """Returns the solution of a problem without supports, free of rigid motions."""
     vectors = []
     for column in motions.T:
         vector = problem.A.createVecLeft()

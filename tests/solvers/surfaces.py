@@ -4,7 +4,7 @@ import math
 
 
 def beam(path, length, side):
-    """A beam along x with its ends as groups."""
+    """Writes a beam along x with its ends as groups."""
     corners = [(x, y, z) for x in (0, length) for y in (0, side) for z in (0, side)]
     quads = {"root": [(0, 1, 3, 2)], "tip": [(4, 6, 7, 5)],
              "sides": [(0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]}
@@ -17,7 +17,7 @@ def beam(path, length, side):
 
 
 def spheres(path, outer, inner=None, parts=120):
-    """A ball, or with an inner radius a thick sphere, with its walls as groups, the inner one reversed.
+    """Writes a ball, or with an inner radius a thick sphere, with its walls as groups, the inner one reversed.
 
     `parts` is the number of triangles from pole to pole.
     """

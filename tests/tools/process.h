@@ -22,7 +22,7 @@ namespace tetwright {
 
 inline void wait_a_moment() { std::this_thread::sleep_for(std::chrono::milliseconds(1)); }
 
-/// A run of the program that the test can watch and send signals to.
+/// A running program that the test can observe and send signals to.
 class Process {
  public:
   Process(const std::vector<std::string>& arguments, const std::string& err) {
@@ -49,7 +49,7 @@ class Process {
   Process& operator=(const Process&) = delete;
 
   void send(int signal) const { kill(id_, signal); }
-  /// Its child, of which it has one at most; 0 where there is none.
+  /// Its child process, of which there is at most one; 0 if there is none.
   pid_t child() const {
     std::ifstream in("/proc/" + std::to_string(id_) + "/task/" + std::to_string(id_) + "/children");
     pid_t id = 0;
@@ -86,7 +86,8 @@ class Process {
     if (!status_ && waitpid(id_, &code, 0) == id_) keep(code);
     return status_.value_or(-1);
   }
-  /// Stops the process and waits until it has stopped; false if it ended before.
+  /// Stops the process and waits until it is stopped.
+  /// \return false if it ended before
   bool stop() {
     send(SIGSTOP);
     while (!ended()) {

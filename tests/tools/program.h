@@ -13,21 +13,21 @@
 
 namespace tetwright {
 
-/// The result of a run of the program.
+/// Result of a run of the program.
 struct Answer {
   int status;
   std::string out, err;
 };
 
-/// The program that is tested: TETWRIGHT_PROGRAM of the environment, for one with sanitizers, or else the
-/// build's.
+/// Path of the program to test: TETWRIGHT_PROGRAM in the environment, for one with sanitizers, or otherwise
+/// the build's.
 inline std::string program() {
   const char* other = std::getenv("TETWRIGHT_PROGRAM");
   return other ? other : TETWRIGHT_PROGRAM;
 }
 
-/// Runs `tetwright ARGUMENTS` in a shell, after the command `before` (for example a limit) and through the
-/// command `with` (for example timeout).
+/// Runs `tetwright ARGUMENTS` in a shell, after the command `before` (for example a limit) and by means of
+/// the command `with` (for example timeout).
 inline Answer run(const std::string& arguments, const std::string& before = "",
                   const std::string& with = "") {
   const TemporaryFolder folder;
@@ -38,7 +38,7 @@ inline Answer run(const std::string& arguments, const std::string& before = "",
           contents(folder / "err")};
 }
 
-/// Expects the status, and one line on stderr that begins as all errors do and contains each of `said`.
+/// Expects the status, and one line on stderr that begins like all errors and contains each of `said`.
 inline void expect_refused(const std::string& arguments, int status, const std::vector<std::string>& said,
                            const std::string& before = "") {
   const Answer a = run(arguments, before);

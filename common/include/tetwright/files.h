@@ -26,7 +26,7 @@ using ByteSink = std::function<void(std::string_view)>;
 
 /// Files that appear together or not at all, each of them complete.
 ///
-/// write() writes a file beside its target under a temporary name and syncs it to disk; commit() renames all
+/// write() writes a file next to its target under a temporary name and syncs it to disk; commit() renames all
 /// of them over their targets. Until then the targets are unchanged, and any abort (an exception, a full
 /// disk, cancellation, abandon_output_files()) leaves no temporary file behind. Only a failed rename, or a
 /// machine that stops during commit(), can leave some files replaced and others not, each of them complete.
@@ -68,7 +68,7 @@ class OutputFiles {
 void write_file_atomically(const std::string& path, std::string_view bytes);
 void write_file_atomically(const std::string& path, const std::function<void(const ByteSink&)>& content);
 
-/// Removes the temporary files beside `path` of a process that ended without its own clean-up.
+/// Removes temporary files next to `path` that belong to a process which ended without cleaning up.
 void remove_temporary_files(const std::string& path, int process) noexcept;
 
 /// Removes the files that were written but not committed, for handlers of signals and of std::terminate that

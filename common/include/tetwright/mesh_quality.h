@@ -206,8 +206,8 @@ struct QualityHistogram {
   /// Linear, 0 to 0.55 steradians; the last bin includes larger angles (a regular tet has 0.5513).
   static constexpr std::size_t angle_bins = 22;
   static constexpr double angle_step = 0.025;
-  /// Logarithmic: volume / mean volume from 2^-8 to 2^8, two bins for each doubling. Volumes beyond are
-  /// counted in the first and last bins, zero and negative ones in the first.
+  /// Logarithmic: volume / mean volume from 2^-8 to 2^8, two bins for each doubling. Volumes beyond this
+  /// range are counted in the first and last bins, zero and negative ones in the first.
   static constexpr std::size_t volume_bins = 32;
   static constexpr double min_relative_volume = 0x1p-8;
 
@@ -424,7 +424,7 @@ struct ImportCleanupReport {
   std::size_t removed_tets = 0;       ///< tets with a repeated vertex
   std::size_t turned_tets = 0;        ///< tets reoriented by swapping their last two vertices
   std::size_t inverted_tets = 0;      ///< flat or negative tets (exact sign) in the returned mesh
-  std::vector<Index> first_inverted;  ///< indices of the first three inverted tets
+  std::vector<Index> first_inverted;  ///< indices of the first inverted tets, at most three
   std::size_t lost_faces = 0;         ///< faces of patches that are no longer on a boundary or interface
 };
 

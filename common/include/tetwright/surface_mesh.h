@@ -145,8 +145,8 @@ struct SurfaceCreases {
     std::array<std::uint16_t, 2> patches;  ///< adjacent patches, ascending
   };
   std::vector<Segment> segments;  ///< ascending by their ends
-  /// Points where the number of creases between the same two patches is not two, or where a crease turns by
-  /// more than 45 degrees; ascending.
+  /// Points where creases do not continue, since the number of segments is not two or they separate different
+  /// pairs of patches, and points where a crease turns by more than 45 degrees; ascending.
   std::vector<Index> corners;
 };
 

@@ -34,7 +34,7 @@ std::vector<Value> read_binary(TextScanner& in, std::size_t n, const std::string
     } else if constexpr (std::is_integral_v<Value> && std::is_same_v<Stored, std::uint64_t>) {
       if (stored > static_cast<std::uint64_t>(INT64_MAX)) in.fail("a value beyond 2^63 (" + what + ")");
     }
-    // NOLINTNEXTLINE(bugprone-signed-char-misuse): a char is a number here, not a character.
+    // NOLINTNEXTLINE(bugprone-signed-char-misuse): a char represents a number here, not a character.
     values[i] = static_cast<Value>(stored);
   }
   return values;

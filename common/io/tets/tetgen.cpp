@@ -200,7 +200,7 @@ FileTriangles read_faces(Lines& in, std::int64_t first, std::size_t points, bool
     for (int k = 0; midside && k < 3; ++k) (void)in.next<std::int64_t>("number of a point");
     const std::int64_t marker = markers ? in.next<std::int64_t>("boundary marker") : 0;
     in.end_line();
-    // TetGen can be asked to list all faces; faces without a marker are in no patch.
+    // TetGen optionally lists all faces; faces without a marker are in no patch.
     if (marker != 0) listed.add(ids, marker);
   }
   return listed;

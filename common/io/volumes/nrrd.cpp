@@ -396,7 +396,7 @@ std::int64_t optional_integer(const HeaderFields& header, const std::string& fie
   return header.has(field) ? header.integer(field) : 0;
 }
 
-/// Offset of the body after the lines that the header tells to skip.
+/// Offset of the body after the lines that must be skipped according to the header.
 std::size_t skip_lines(const HeaderFields& header, TextScanner& body) {
   const std::string field = header.any_of({"line skip", "lineskip"});
   const std::int64_t lines = optional_integer(header, field);

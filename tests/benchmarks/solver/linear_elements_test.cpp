@@ -13,7 +13,7 @@ namespace {
 
 constexpr double rounding = 1e-12;  // relative, for sums of some thousand terms
 
-/// 750 tets of all shapes, inner points moved by up to a fifth of an edge.
+/// A box of 750 tets of all shapes; inner points are moved by up to a fifth of an edge.
 TetMesh irregular_box() { return jittered_lattice(5, 0.2, 7); }
 
 /// Displacements of all points, concatenated.
@@ -25,7 +25,7 @@ Eigen::VectorXd at_points(const TetMesh& mesh, Field field) {
   return values;
 }
 
-/// Solution without load whose fixed unknowns have the values of `field`.
+/// Solution without load; the fixed unknowns have the values of `field`.
 Eigen::VectorXd solve_from_boundary(const SparseMatrix& matrix, const std::vector<std::uint8_t>& fixed,
                                     const Eigen::VectorXd& field) {
   const FreeSystem system(matrix, Eigen::VectorXd::Zero(field.size()), fixed, field);

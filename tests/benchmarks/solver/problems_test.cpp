@@ -26,7 +26,7 @@ TEST(Problems, PoissonErrorsConvergeAtTheRatesOfLinearElements) {
 TEST(Problems, TheSolutionIsTheBestInTheEnergyNorm) {
   const PoissonErrors errors = errors_of_box(10);
   EXPECT_GT(errors.energy, 0.01);
-  // The minimum over fields with these boundary values, of which interpolation is one.
+  // The solution is the minimum over fields with these boundary values, one of which is the interpolation.
   EXPECT_LT(errors.energy, errors.interpolation);
 }
 
@@ -45,7 +45,7 @@ TEST(Problems, IterationsGrowWithTheNumberOfPointsAndWithBadShapes) {
     return count_iterations(mesh, heat_matrix(mesh), elastic_matrix(mesh, {}));
   };
   const Iterations coarse = iterations(6, 0.1), fine = iterations(12, 0.1), bad = iterations(12, 0.33);
-  EXPECT_NEAR(static_cast<double>(fine.heat) / coarse.heat, 2, 0.4);  // as 1 / h
+  EXPECT_NEAR(static_cast<double>(fine.heat) / coarse.heat, 2, 0.4);  // proportional to 1 / h
   EXPECT_GT(bad.heat, fine.heat);
   EXPECT_GT(bad.elastic, fine.elastic);
 }

@@ -32,7 +32,7 @@ TEST(Spectrum, LargestFrequencyIsThatOfADenseSolver) {
   }
 }
 
-/// Growth of central differences from a random state: bounded below the critical step, far beyond all bounds
+/// Growth of central differences from a random state: bounded below the critical step, exceeding any bound
 /// above it.
 double growth(const SparseMatrix& stiffness, const Eigen::VectorXd& masses, double step) {
   Eigen::VectorXd now = Eigen::VectorXd::LinSpaced(masses.size(), -1, 1).array().sin(), before = now;
@@ -77,7 +77,7 @@ TEST(Spectrum, ElementEigenvaluesBoundThoseOfTheMesh) {
                                                                 Eigen::EigenvaluesOnly);
     return solver.eigenvalues()[matrix.rows() - 1];
   };
-  constexpr double tets_at_a_point = 24;  // of Kuhn's lattice
+  constexpr double tets_at_a_point = 24;  // in Kuhn's lattice
   for (const auto& [element, whole] : {std::pair{found.heat, largest(heat_matrix(mesh))},
                                        std::pair{found.elastic, largest(elastic_matrix(mesh, {}))}}) {
     EXPECT_LE(element, whole * (1 + 1e-12));

@@ -9,8 +9,8 @@
 
 namespace tetwright {
 
-/// Solid over a polygon of the xy plane (counter-clockwise, star-shaped around `centre`, its first point's
-/// mirror image) from z = 0 to `height`.
+/// Solid over a polygon of the xy plane from z = 0 to `height`. The polygon is counter-clockwise and
+/// star-shaped around `centre`, the mirror image of its first point.
 inline TriangleMesh extruded(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& centre,
                              double height) {
   TriangleMesh mesh;
@@ -35,7 +35,7 @@ inline TriangleMesh l_block() {
   return extruded({{0, 0}, {1, 0}, {1, 0.5}, {0.5, 0.5}, {0.5, 1}, {0, 1}}, {0.25, 0.25}, 1);
 }
 
-/// A cylinder with this number of facets.
+/// A cylinder with `facets` facets.
 inline TriangleMesh cylinder(int facets, double radius = 0.5, double height = 1) {
   std::vector<Eigen::Vector2d> circle;
   for (int i = 0; i < facets; ++i) {
@@ -45,7 +45,7 @@ inline TriangleMesh cylinder(int facets, double radius = 0.5, double height = 1)
   return extruded(circle, {0, 0}, height);
 }
 
-/// Rotated so that no face is parallel to an axis.
+/// Rotates the mesh so that no face is parallel to an axis.
 inline TriangleMesh turned(TriangleMesh mesh) {
   const Eigen::Matrix3d rotation = (Eigen::AngleAxisd(0.5, Vec3(1, 2, 3).normalized()) *
                                     Eigen::AngleAxisd(0.9, Vec3(3, -1, 2).normalized()))

@@ -45,7 +45,7 @@ TEST(SurfacePatches, OfACubeAreItsSides) {
   EXPECT_EQ(found.verdict, Verdict::part);
   EXPECT_EQ(found.count, 6U);
   EXPECT_EQ(found.dropped, 0U);
-  // Numbered by their first triangles; triangles of one patch have one normal.
+  // Patches are numbered by their first triangles; all triangles of a patch have the same normal.
   EXPECT_EQ(found.patches.front(), 0);
   std::vector<std::optional<Vec3>> normals(6);
   for (std::size_t t = 0; t < cube.triangles.size(); ++t) {
@@ -75,9 +75,9 @@ TEST(SurfacePatches, HoldTheFacetsOfACylinderTogether) {
     EXPECT_EQ(creases.segments.size(), static_cast<std::size_t>(2 * facets));
     EXPECT_TRUE(creases.corners.empty());
   }
-  // A prism of six facets is no cylinder.
+  // A prism of six facets does not count as a cylinder.
   EXPECT_EQ(patches_of(cylinder(6)).count, 8U);
-  // An explicit angle decides.
+  // An explicit angle takes precedence.
   EXPECT_EQ(patches_of(cylinder(12), degrees(20)).count, 14U);
   EXPECT_EQ(patches_of(cylinder(12), degrees(100)).count, 1U);
 }
@@ -97,7 +97,7 @@ TEST(SurfacePatches, AreNotLookedForOnScans) {
 }
 
 TEST(SurfacePatches, LeaveOutCreasesThatFadeOut) {
-  // Two halves of a strip that turn by 45 degrees along their common edge up to `sharp`, then less and less
+  // Two halves of a strip that turn by 45 degrees along their common edge up to `sharp`, then gradually less,
   // down to 20.
   constexpr Index n = 32;
   const auto strip = [&](Index sharp) {
@@ -120,7 +120,7 @@ TEST(SurfacePatches, LeaveOutCreasesThatFadeOut) {
 }
 
 TEST(SurfacePatches, DoNotHangTogetherAcrossFlatTriangles) {
-  // A point in the middle of an edge of one side only, and the flat triangle that closes the gap.
+  // A point in the middle of an edge, used on one side only, and the flat triangle that closes the gap.
   TriangleMesh s = turned(unit_cube());
   const Triangle t = s.triangles[2];  // a wall, with an edge of the bottom
   ASSERT_EQ(patches_of(s).count, 6U);
@@ -134,7 +134,8 @@ TEST(SurfacePatches, DoNotHangTogetherAcrossFlatTriangles) {
 
 TEST(SurfacePatches, SmallOnesGoToTheirNeighbours) {
   TriangleMesh s = unit_cube();
-  // Unconnected, beside it: none of its six sides is large, and the last one has no neighbour to merge with.
+  // A separate solid next to it: none of its six sides is large, and the last one has no neighbour to merge
+  // with.
   const TriangleMesh bump =
       extruded({{0.4, 0.4}, {0.41, 0.4}, {0.41, 0.41}, {0.4, 0.41}}, {0.405, 0.405}, 0.01);
   s = joined(s, bump);
@@ -171,7 +172,7 @@ TEST(SurfacePatches, AreAtMost65535) {
 }
 
 TEST(SurfacePatches, KinksAreCorners) {
-  // The rim of the L's top is one crease between the top and a wall that goes all around.
+  // The rim of the L's top is a single crease, between the top and the wall around it.
   const TriangleMesh s = l_block();
   std::vector<std::uint16_t> patches;
   for (const Triangle& t : s.triangles) {
@@ -182,7 +183,8 @@ TEST(SurfacePatches, KinksAreCorners) {
 }
 
 TEST(SurfacePatches, AZigzagHasNoCorners) {
-  // A strip of squares 1 wide, with a border between two patches that goes up and down by 1, and turns once.
+  // A strip of squares of width 1, with a border between two patches that alternates up and down by 1, and
+  // turns once.
   std::vector<Vec3> points;
   std::vector<Triangle> triangles;
   std::vector<std::uint16_t> patches;
@@ -200,7 +202,7 @@ TEST(SurfacePatches, AZigzagHasNoCorners) {
     }
   EXPECT_GT(find_creases(points, triangles, patches).corners.size(), 20U);
   const std::vector<Index> corners = find_creases(points, triangles, patches, 8).corners;
-  // Both ends, and the turn, which is within the reach.
+  // Both ends, and the turn within the reach.
   EXPECT_GE(corners.size(), 3U);
   EXPECT_LE(corners.size(), 4U);
   EXPECT_TRUE(std::any_of(corners.begin(), corners.end(),
@@ -229,13 +231,13 @@ TEST(MeshPatches, AreNumberedForEachPairOfMaterials) {
       grid_mesh({4, 4, 4}, [](int x, int, int) { return std::optional<MaterialTag>(x < 2 ? 1 : 2); });
   const SurfacePatches found = find_mesh_patches(mesh, automatic, "m.vtu");
   EXPECT_EQ(found.verdict, Verdict::part);
-  EXPECT_EQ(found.count, 11U);  // five sides each, and the interface
+  EXPECT_EQ(found.count, 11U);  // five sides for each material, and the interface
   std::map<MaterialPair, std::set<std::uint16_t>> numbers;
   for (const InterfaceTriangle& t : mesh.interfaces) numbers[t.pair()].insert(t.patch);
   EXPECT_EQ(numbers.at({1, std::nullopt}), (std::set<std::uint16_t>{0, 1, 2, 3, 4}));
   EXPECT_EQ(numbers.at({2, std::nullopt}), (std::set<std::uint16_t>{0, 1, 2, 3, 4}));
   EXPECT_EQ(numbers.at({1, 2}), std::set<std::uint16_t>{0});
-  // Eight edges of 4 x 4 sides on no junction curve, of four or two segments.
+  // Eight edges of 4 x 4 sides that are not on a junction curve, of four or two segments.
   const CreaseCurves curves = mesh_creases(mesh);
   EXPECT_EQ(curves.segments.size(), 8U * 4 + 8U * 2);
 }
@@ -264,7 +266,7 @@ TEST(MeshPatches, OfVoxelsAreNone) {
 }
 
 TEST(MeshPatches, OfManyMaterialsAreFewOfEachPair) {
-  // More pairs of materials than numbers of patches.
+  // More pairs of materials than patch numbers.
   TetMesh mesh = grid_mesh(
       {30, 30, 30}, [](int x, int y, int z) { return std::optional<MaterialTag>(x + 30 * (y + 30 * z)); });
   const SurfacePatches found = find_mesh_patches(mesh, off, "m.vtu");

@@ -57,7 +57,7 @@ TEST_F(AtomicFile, ImpossibleTargets) {
             std::string::npos);
   EXPECT_NE(error_of<OutputError>([&] { check_output_file("/dev/null"); }).find("not a regular file"),
             std::string::npos);
-  if (geteuid() != 0) {  // root may write anywhere
+  if (geteuid() != 0) {  // root may write everywhere
     chmod(path("folder").c_str(), 0555);
     EXPECT_NE(error_of<OutputError>([&] { check_output_file(path("folder/a")); }).find("not writable"),
               std::string::npos);
@@ -118,7 +118,7 @@ TEST_F(AtomicFile, FilesOfOneCallAppearTogether) {
   OutputFiles files;
   files.write(path("a"), "new");
   files.write(path("b"), "other");
-  // A file that can't be written does not affect the others.
+  // A file that cannot be written does not affect the others.
   EXPECT_NE(error_of<OutputError>([&] { files.write(path("none/c"), "x"); }).find("No such file"),
             std::string::npos);
   files.commit();
@@ -166,7 +166,7 @@ TEST_F(AtomicFile, WhatIsAbandonedIsGone) {
 }
 
 TEST_F(AtomicFile, ADiskThatIsFull) {
-  // /dev/full fails every write like a full disk, but is rejected as a target before.
+  // /dev/full fails every write like a full disk, but is rejected as a target before that.
   EXPECT_NE(error_of<OutputError>([&] { write_file_atomically("/dev/full", "x"); }).find("regular"),
             std::string::npos);
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Compares the predicates with CGAL's exact kernel, on points that are random, nearly coplanar and far apart
-// in scale.
+// Compares the predicates with CGAL's exact kernel, on points that are random, nearly coplanar, or of very
+// different scales.
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ int oracle(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   return static_cast<int>(CGAL::orientation(cgal(a), cgal(b), cgal(c), cgal(d)));
 }
 
-/// A coordinate that is small, large, or one of a few values, so that flat tets are common.
+/// A coordinate that is small, large, or one of a few values; the latter makes flat tets common.
 double coordinate(Random& random) {
   switch (random.below(3)) {
     case 0:

@@ -17,12 +17,12 @@ TEST(Predicates, SignOfTheUnitTet) {
   EXPECT_EQ(orient3d_value(o, x, y, z), 1);
 }
 
-// On a plane through integer points the rounded determinant is noise; one ulp off the plane its sign is
-// known.
+// On a plane through integer points the rounded determinant is mostly rounding error; one ulp off the plane
+// its sign is known.
 TEST(Predicates, OneUlpOffAPlaneIsSeen) {
   Random random(7);
   for (int i = 0; i < 2000; ++i) {
-    // Whole numbers up to 2^20 in the plane z = x + y, shifted far away: every coordinate is exact.
+    // Whole numbers up to 2^20 in the plane z = x + y, shifted far away, so that every coordinate is exact.
     const auto on_plane = [&] {
       const double u = random.below(1u << 20), v = random.below(1u << 20);
       return Vec3(u + 0x1p30, v + 0x1p30, u + v + 0x1p31);
@@ -30,7 +30,7 @@ TEST(Predicates, OneUlpOffAPlaneIsSeen) {
     const Vec3 a = on_plane(), b = on_plane(), c = on_plane();
     Vec3 d = on_plane();
     EXPECT_EQ(orient3d(a, b, c, d), 0);
-    // Above the plane is positive if (a, b, c) turns counter-clockwise seen from above.
+    // A point above the plane is positive if (a, b, c) turns counter-clockwise seen from above.
     const int turn = orient2d(a, b, c, 0, 1);
     if (turn == 0) continue;
     d.z() = std::nextafter(d.z(), 1e300);
@@ -38,7 +38,7 @@ TEST(Predicates, OneUlpOffAPlaneIsSeen) {
   }
 }
 
-// Even permutations preserve the sign, odd ones reverse it: near zero only with exact arithmetic.
+// Even permutations preserve the sign, odd ones reverse it. Near zero this requires exact arithmetic.
 TEST(Predicates, PermutationsAgreeNearZero) {
   Random random(8);
   for (int i = 0; i < 5000; ++i) {

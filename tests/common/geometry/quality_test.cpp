@@ -36,7 +36,7 @@ TEST(Quality, CornerOfTheCube) {
   }
 }
 
-// Girard: a tet's solid angle is the sum of the three dihedral angles there minus pi.
+// Girard: the solid angle at a vertex of a tet is the sum of its three dihedral angles minus pi.
 TEST(Quality, SolidAnglesFollowFromDihedrals) {
   Random random(5);
   for (int i = 0; i < 1000; ++i) {
@@ -67,7 +67,7 @@ TEST(Quality, NegativeAndFlatTetsHaveNone) {
 TEST(Quality, PaperQualityHasThreeFactors) {
   const auto t = positive(regular);
   const double volume = 8.0 / 3, edge = 2 * std::numbers::sqrt2;
-  // Ideal volume and short enough edges: only the angle counts, and it is perfect.
+  // Ideal volume and sufficiently short edges: only the angle matters, and it is optimal.
   EXPECT_EQ(TetQuality::for_target(volume, 1)(t[0], t[1], t[2], t[3]), 1);
   // Eight times too small: the factor 1/8 under the cube root.
   EXPECT_NEAR(TetQuality::for_target(8 * volume, 1)(t[0], t[1], t[2], t[3]), 0.5, 1e-15);

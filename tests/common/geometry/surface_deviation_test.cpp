@@ -21,7 +21,7 @@ struct Surface {
   ProjectionTree tree() const { return {points, items}; }
 };
 
-/// Graph of a function over n by n squares of [0, 1]^2, two triangles each.
+/// Graph of a function over n x n squares of [0, 1]^2, two triangles each.
 template <class Height>
 Surface graph(Index n, const Height& height) {
   Surface s;
@@ -86,7 +86,7 @@ TEST(SurfaceDeviation, OfASurfaceFromItselfIsNothing) {
   EXPECT_LT(d.rms, 1e-12);
 }
 
-// One triangle over a ridge: its corners are on the other surface, and it deviates by 0.3 between them.
+// One triangle over a ridge: its corners are on the other surface, but it deviates by 0.3 between them.
 TEST(SurfaceDeviation, IsFoundBetweenTheCorners) {
   const Surface roof = graph(40, [](double u, double) { return 0.3 * (1 - std::abs(2 * u - 1)); });
   Surface floor;
@@ -97,7 +97,7 @@ TEST(SurfaceDeviation, IsFoundBetweenTheCorners) {
   const SurfaceDeviation d = surface_deviation(floor.tree(), roof.tree(), 1e-6);
   expect_between(d, 0.3 / std::sqrt(1 + 0.36));
   EXPECT_NEAR(d.place.x(), 0.5, 0.01);
-  // Below the slopes distances grow linearly from 0 to the maximum.
+  // Below the slopes, distances grow linearly from 0 to the maximum.
   EXPECT_NEAR(d.rms, d.lower / std::sqrt(3), 0.01 * d.lower);
 }
 
@@ -124,12 +124,12 @@ TEST(SurfaceDeviation, IsThatOfASearchOfManyPoints) {
   }
 }
 
-// An accuracy that is always reached leaves the upper bound of the whole triangle.
+// With an accuracy that is always reached the upper bound is that of the whole triangle.
 TEST(SurfaceDeviation, OfATriangleOverAFanIsBoundedBeforeAnyCut) {
   Random random(7);
   const auto number = [&] { return 2 * random.uniform() - 1; };
   for (int round = 0; round < 200; ++round) {
-    // A fan around a point at any height, some of it flat; the triangle lies over one to all of its
+    // A fan around a point at any height, parts of it flat; the triangle lies over one to all of its
     // triangles.
     const Index sides = 3 + static_cast<Index>(4 * random.uniform());
     const double height = round % 3 == 0 ? 0 : number();
@@ -149,7 +149,7 @@ TEST(SurfaceDeviation, OfATriangleOverAFanIsBoundedBeforeAnyCut) {
 }
 
 TEST(SurfaceDeviation, OfALidOverAPitIsBoundedBeforeAnyCut) {
-  // The lid's corners are on the pit's walls, each near the next edge between two.
+  // The lid's corners are on the pit's walls, each near the next edge between two walls.
   Surface pit, lid;
   for (Index i = 0; i < 3; ++i) {
     const double angle = 2 * std::numbers::pi * i / 3;
@@ -163,7 +163,7 @@ TEST(SurfaceDeviation, OfALidOverAPitIsBoundedBeforeAnyCut) {
 }
 
 TEST(SurfaceDeviation, OfAFlatPartIsKnownBeforeAnyCut) {
-  // A triangle in three parts; others over an edge of two of them, and over all.
+  // A triangle in three parts; other triangles over an edge of two of them, and over all three.
   const Surface floor{{{0, 0, 0}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}},
                       {{{0, 1, 2}, {}}, {{0, 2, 3}, {}}, {{0, 3, 1}, {}}}};
   for (const double x : {0.3, 0.1}) {
@@ -190,7 +190,7 @@ TEST(TrianglesBeyond, AreThoseWithAPointThatFar) {
       for (int v = 0; u + v <= steps; ++v)
         farthest = std::max(farthest, distance(a + (b - a) * u / steps + (c - a) * v / steps));
     if (listed < far.size() && far[listed].item == i) {
-      // Every point is this near to a sampled one.
+      // Every point is within this distance of a sampled one.
       EXPECT_GT(farthest + ((b - a).norm() + (c - a).norm()) / steps, limit);
       between_corners += std::max({distance(a), distance(b), distance(c)}) <= limit;
       ++listed;

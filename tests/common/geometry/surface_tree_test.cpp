@@ -20,7 +20,7 @@ Vec3 random_vector(Random& random) {
   return 2 * Vec3(x, y, random.uniform()) - Vec3::Ones();
 }
 
-/// Points on triangles, near them at all scales, in the surface's surroundings and far away.
+/// Points on triangles, near them at all scales, around the surface and far away.
 std::vector<Vec3> probes(const TriangleMesh& mesh, std::size_t count) {
   Random random(5);
   std::vector<Vec3> points;

@@ -14,7 +14,8 @@ namespace {
 
 MeshTriangle triangle(Triangle ids, Vec3 a, Vec3 b, Vec3 c) { return {ids, {a, b, c}}; }
 
-/// All 36 orders of the vertices and both orders of the triangles must agree.
+/// Checks that all 36 orders of the vertices and both orders of the triangles give the same result, and
+/// returns it.
 bool intersect_in_any_order(const MeshTriangle& f, const MeshTriangle& g) {
   const bool first = triangles_intersect(f, g);
   std::array<int, 3> p{0, 1, 2};
@@ -37,8 +38,9 @@ bool intersect_in_any_order(const MeshTriangle& f, const MeshTriangle& g) {
 
 // ------------------------------------------------------------------------------------------ brute force
 // An independent check for small integer coordinates: two convex hulls of points are disjoint if and only if
-// a plane separates them, and then one does whose normal is a cross product of two differences of the points
-// (or, in degenerate cases, a difference or the cross product of a difference and such a normal).
+// a plane separates them. There is then a separating plane whose normal is a cross product of two differences
+// of the points (or, in degenerate cases, a difference, or the cross product of a difference and such a
+// normal).
 using IntVec = std::array<std::int64_t, 3>;
 IntVec minus(const IntVec& a, const IntVec& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 IntVec cross(const IntVec& a, const IntVec& b) {
@@ -94,7 +96,8 @@ bool brute_force(const Triangle& f, const Triangle& g, const std::vector<IntVec>
   return cross(n, m) == IntVec{0, 0, 0} && dot(n, m) > 0;
 }
 
-/// Random triangles on a tiny grid (so that touching and coplanar ones are common) among `ids` points.
+/// Compares random triangles among `ids` points on a tiny grid, so that touching and coplanar ones are
+/// common.
 void compare_with_brute_force(std::uint64_t seed, std::uint32_t size, std::uint32_t flat, std::uint32_t ids,
                               bool degenerate) {
   Random random(seed);
@@ -138,7 +141,7 @@ TEST(TriangleIntersection, AgreesWithBruteForceWithManySharedPoints) {
   compare_with_brute_force(5, 4, 0, 4, false);
 }
 TEST(TriangleIntersection, DegenerateTrianglesAreSegmentsAndPoints) {
-  // Nothing shared: the hulls decide, whatever the shape.
+  // No shared vertices: the convex hulls decide, whatever the shape.
   Random random(6);
   for (int round = 0; round < 4000; ++round) {
     std::vector<IntVec> p(6);
@@ -173,7 +176,7 @@ TEST(TriangleIntersection, SharedVertexCountsOnlyBeyondIt) {
   const MeshTriangle f = triangle({0, 1, 2}, o, Vec3(2, -1, 0), Vec3(2, 1, 0));
   EXPECT_FALSE(intersect_in_any_order(f, triangle({0, 3, 4}, o, Vec3(-1, 0, 1), Vec3(-1, 0, -1))));
   EXPECT_TRUE(intersect_in_any_order(f, triangle({0, 3, 4}, o, Vec3(1, 0, 1), Vec3(1, 0, -1))));
-  // The edge opposite the shared vertex touches in one point.
+  // The edge opposite the shared vertex touches the other triangle in one point.
   EXPECT_TRUE(intersect_in_any_order(f, triangle({0, 3, 4}, o, Vec3(1, 0, 0), Vec3(1, 0, 1))));
 }
 

@@ -25,7 +25,7 @@ std::string error_of(const Call& call) {
   return {};
 }
 
-/// Expects that reading `text` as file "f" throws an InputError whose message has both texts.
+/// Expects that reading `text` as file "f" throws an InputError whose message contains both texts.
 template <class Read>
 void expect_input_error(const Read& read, std::string_view text, const std::string& first,
                         const std::string& second = "") {

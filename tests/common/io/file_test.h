@@ -7,7 +7,7 @@
 
 namespace tetwright {
 
-/// A test that has a folder of its own.
+/// A test with a separate folder.
 class FileTest : public ::testing::Test {
  protected:
   std::string path(const std::string& name) const { return folder_ / name; }

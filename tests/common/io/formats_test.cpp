@@ -86,7 +86,7 @@ TEST_F(Formats, EveryFormatOfTetMeshesIsWritten) {
     const std::string file = path("m" + format.extension);
     write_tet_mesh(tricky_measurable_tets(), file, nullptr, format.name);
     EXPECT_EQ(written_tet_format(file, format.name).name, format.name);
-    if (file_kind(file) == FileKind::unknown) continue;  // only written
+    if (file_kind(file) == FileKind::unknown) continue;  // can only be written
     EXPECT_EQ(read_tet_mesh(file).mesh.tets.size(), tricky_measurable_tets().tets.size()) << format.name;
   }
   EXPECT_EQ(files_of_tet_mesh("a/b.ELE"), (std::vector<std::string>{"a/b.NODE", "a/b.ELE", "a/b.FACE"}));

@@ -8,7 +8,7 @@
 
 namespace tetwright {
 
-/// Coordinates that are hard to write: with 17 digits, huge, tiny, subnormal, minus zero.
+/// Coordinates that are difficult to write: with 17 digits, huge, tiny, subnormal, minus zero.
 inline std::vector<Vec3> tricky_points() {
   return {{0.1, 1.0 / 3, 0.1 + 0.2},
           {-1e308, 1.7976931348623157e308, 123456789012345678.0},
@@ -26,7 +26,7 @@ inline TetMesh tricky_tets() {
   return mesh;
 }
 
-/// Without coordinates that are too large for read_tet_mesh().
+/// tricky_tets() without coordinates that are too large for read_tet_mesh().
 inline TetMesh tricky_measurable_tets() {
   TetMesh mesh = tricky_tets();
   mesh.points[1] = {-1e49, 1.7976931348623157e49, 123456789012345678.0};

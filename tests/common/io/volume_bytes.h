@@ -16,7 +16,7 @@
 
 namespace tetwright {
 
-/// Bytes of numbers in a file.
+/// Bytes of numbers as stored in a file.
 template <class Number>
 std::string bytes_of(const std::vector<Number>& numbers, bool big = false) {
   std::string out;
@@ -28,7 +28,8 @@ std::string bytes_of(const std::vector<Number>& numbers, bool big = false) {
   return out;
 }
 
-/// Compressed bytes. `wrapper` is zlib's parameter windowBits: 31 for gzip, 15 for zlib.
+/// Compresses bytes.
+/// \param wrapper zlib's parameter windowBits: 31 for gzip, 15 for zlib
 inline std::string deflated(const std::string& bytes, int wrapper = 31) {
   z_stream stream{};
   EXPECT_EQ(deflateInit2(&stream, 6, Z_DEFLATED, wrapper, 8, Z_DEFAULT_STRATEGY), Z_OK);
@@ -63,7 +64,7 @@ inline std::string replaced(std::string text, const std::string& from, const std
   return text.replace(at, from.size(), to);
 }
 
-/// A FileReader that knows one file, `path`, with the content `bytes`.
+/// A FileReader for a single file, `path`, whose content is `bytes`.
 inline FileReader one_file(const std::string& path, const std::string& bytes) {
   return [=](const std::string& asked) {
     if (asked != path) throw InputError("cannot read " + asked + ": No such file or directory");

@@ -9,7 +9,7 @@
 
 namespace tetwright {
 
-/// Makes a ZIP archive in memory of these files, by name.
+/// Creates a ZIP archive of these files, by name, in memory.
 inline std::string zip_of(const std::vector<std::pair<std::string, std::string>>& files) {
   zip_error_t error;
   zip_error_init(&error);

@@ -23,7 +23,7 @@ TEST(BoundaryGroups, PairsGetTheNumbersThatTheUsersLeave) {
   const BoundaryGroups groups(mesh);
   std::vector<std::int64_t> numbers;
   for (const BoundaryGroups::Group& g : groups.all()) numbers.push_back(g.number);
-  // outer, inner, then -5, "wall" and "inlet" in their order.
+  // outer, inner, then -5, "wall" and "inlet", in this order.
   EXPECT_EQ(numbers, (std::vector<std::int64_t>{1, 3, 4, 5, 2}));
   EXPECT_EQ(groups.all()[0].pair, outer);
   EXPECT_EQ(groups.all()[4].surface_region.name, "inlet");

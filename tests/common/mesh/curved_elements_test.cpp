@@ -23,7 +23,7 @@ Element element(const TetMesh& mesh, const MidsideNodes& nodes, std::size_t t) {
   return e;
 }
 
-/// Determinant of the Jacobian at a point by the shape functions, over that of the straight tet.
+/// Jacobian determinant at a point from the shape functions, divided by that of the straight tet.
 double scaled_jacobian(const Element& e, const std::array<double, 4>& l) {
   // Shape functions: corner i: l (2 l - 1); edge ab: 4 la lb.
   std::array<Vec3, 4> by_coordinate;
@@ -72,16 +72,16 @@ TEST(CurvedElements, ABoundOfTheJacobian) {
     ASSERT_LE(bound, smallest + 1e-12);
     nearest = std::min(nearest, smallest - bound);
   }
-  EXPECT_LT(nearest, 0.01);  // at corners it is exact
+  EXPECT_LT(nearest, 0.01);  // attained at corners
 }
 
 TEST(CurvedElements, NodesFollowTheSurface) {
-  // A sphere of radius 1 inside a cube is too coarse for a mesh of few tets: follow the sphere itself.
+  // The sample sphere of radius 1 in a cube has too few tets: use an exact sphere instead.
   TetMesh mesh = std::get<TetMesh>(make_sample("tet_cube"));
   Vec3 middle = Vec3::Zero();
   for (const Vec3& p : mesh.points) middle += p / static_cast<double>(mesh.points.size());
   mesh.interfaces = find_interfaces(mesh);
-  // Maps the boundary of the cube onto a slightly stretched ball around it.
+  // Maps the boundary of the cube onto a slightly enlarged ball around it.
   const auto onto_ball = [&](const Vec3& p) { return Vec3(middle + 1.05 * (p - middle)); };
   SurfaceToFollow ball;
   ball.onto_patch = [&](const Vec3& p, const InterfacePatch&, double) { return std::optional(onto_ball(p)); };

@@ -26,7 +26,7 @@ MeshField sampled(const TetMesh& mesh, double (*f)(const Vec3&)) {
   return field;
 }
 
-/// Points in [low, high)^3, and no tets.
+/// Points in [low, high)^3, without tets.
 TetMesh random_points(std::uint64_t seed, std::size_t count, double low, double high) {
   TetMesh mesh;
   Random random(seed);
@@ -154,7 +154,7 @@ TEST(FieldTransfer, InvertedAndFlatTets) {
   Random random(12);
   for (Tet& t : before.tets)
     if (random.below(2)) std::swap(t[0], t[1]);
-  // Flat tets with values of their own, which must not appear where another tet contains the point.
+  // Flat tets with different values, which must not appear at points that another tet contains.
   const auto n = static_cast<Index>(before.points.size());
   before.points.insert(before.points.end(), {{1, 1, 2.125}, {3, 1, 2.125}, {1, 3, 2.125}, {3, 3, 2.125}});
   before.points.insert(before.points.end(), {{1, 1, 1}, {2, 2, 2}, {3, 3, 3}});
@@ -185,7 +185,7 @@ TEST(FieldTransfer, FlatTetsAloneAreNearest) {
   EXPECT_EQ(x[2], 0);
   EXPECT_NEAR(x[3], 1.25, 1e-15);
   EXPECT_EQ(after.cell_fields[0].values, std::vector<double>{7});
-  // A tet reduced to a segment, and one reduced to a point.
+  // A tet degenerated to a segment, and one degenerated to a point.
   before.points = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 0, 0}};
   transfer_fields(before, after);
   for (const double v : after.point_fields[0].values) EXPECT_TRUE(0 <= v && v <= 2) << v;
@@ -249,7 +249,7 @@ TEST(FieldTransfer, TheNearestTetOfAMaterial) {
   std::fill(after.materials.begin(), after.materials.end(), 5);
   transfer_fields(before, after);
   const auto distance = [&](const Vec3& p, const Tet& t) {
-    // Sampling the tet distinguishes the nearest one from clearly farther ones.
+    // Sampling the tets distinguishes the nearest one from those that are clearly farther away.
     double best = 1e9;
     constexpr int n = 12;
     for (int i = 0; i <= n; ++i)
@@ -283,7 +283,7 @@ TEST(FieldTransfer, NaNReachesWhatDependsOnIt) {
   const std::vector<double>& x = after.point_fields[0].values;
   EXPECT_TRUE(std::isnan(x[0]));
   EXPECT_TRUE(std::isnan(x[1]));
-  EXPECT_EQ(x[2], 1);  // on the face opposite to it
+  EXPECT_EQ(x[2], 1);  // on the opposite face
   EXPECT_NEAR(x[3], 3, 1e-15);
   EXPECT_FALSE(std::isnan(x[4]));
 }

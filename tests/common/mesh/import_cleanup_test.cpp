@@ -29,7 +29,7 @@ void expect_all_positive(const TetMesh& mesh) {
 
 void turn(Tet& t) { std::swap(t[2], t[3]); }
 
-/// Gives every tet points of its own.
+/// Gives every tet its own points.
 TetMesh soup_of(const TetMesh& mesh) {
   TetMesh soup = mesh;
   soup.points.clear();
@@ -170,7 +170,7 @@ TEST(ImportCleanup, PatchesStayWithTheirFaces) {
   EXPECT_EQ(soup.patch_groups.size(), 1u);
 }
 
-// Soups of tets that touch in pairs, of two materials, each with a patch of its own on the common face.
+// Soups of pairs of touching tets of two materials; each pair has a different patch on its common face.
 TEST(ImportCleanup, MorePatchesThanNumbersEndAtOnce) {
   constexpr int pairs = 0xffff;
   TetMesh soup;
@@ -186,7 +186,8 @@ TEST(ImportCleanup, MorePatchesThanNumbersEndAtOnce) {
       InterfaceTriangle t;
       t.ids = {first, first + 1, first + 2};
       t.material = apex > 0 ? 1 : 2;
-      // All of the first material have a number of their own; the last pair has that of the second only.
+      // All faces of the first material have different numbers; the last pair has only the second material's
+      // number.
       t.patch = static_cast<std::uint16_t>(apex > 0 ? (i < pairs ? i + 1 : 0) : i < pairs ? 0 : 1);
       if (t.patch == 0) continue;
       soup.interfaces.push_back(t);
@@ -216,7 +217,7 @@ TEST(ImportCleanup, PatchesThatComeToLieBetweenMaterialsKeepTheirGroups) {
   ASSERT_GT(between, 0u);
   soup.patch_groups[{{1, std::nullopt}, 1}] = {0, "left"};
   soup.patch_groups[{{2, std::nullopt}, 1}] = {0, "right"};
-  EXPECT_EQ(make_coherent(soup).lost_faces, between / 2);  // the names of one side
+  EXPECT_EQ(make_coherent(soup).lost_faces, between / 2);  // the names of one of the sides
   std::set<std::string> names;
   std::size_t kept = 0;
   for (const InterfaceTriangle& t : soup.interfaces) {
@@ -292,7 +293,7 @@ TEST(ImportCleanup, TetsWithARepeatedVertexAreTakenOut) {
 
 TEST(ImportCleanup, ATrulyNegativeTetStaysAndIsReported) {
   TetMesh mesh = grid_mesh(4);
-  // The point at (2, 2, 2) moves beyond its star, which inverts part of it.
+  // The point at (2, 2, 2) moves out of its star, which inverts some of the tets.
   const auto at = std::find(mesh.points.begin(), mesh.points.end(), Vec3(2, 2, 2));
   ASSERT_NE(at, mesh.points.end());
   *at = Vec3(3.5, 3, 3.25);
@@ -330,7 +331,7 @@ TEST(ImportCleanup, ATetThatIsThereTwice) {
   turn(mesh.tets[0]);
   mesh.tets.push_back(mesh.tets[0]);
   mesh.materials.push_back(2);
-  // Both lie on one side of all their faces: one stays inverted for the other.
+  // Both lie on the same side of all their faces, so one must stay inverted.
   const ImportCleanupReport report = make_coherent(mesh);
   EXPECT_EQ(report.turned_tets, 1u);
   EXPECT_EQ(report.inverted_tets, 1u);

@@ -49,7 +49,7 @@ TEST(Interfaces, CountsAgreeWithTheFacesAndPairsWithTheTopology) {
 }
 
 TEST(Interfaces, EachMaterialIsEnclosedByNormalsThatPointOutOfIt) {
-  // Divergence theorem: a material's triangles, reversed for the other side, enclose its volume.
+  // Divergence theorem: a material's triangles, reversed on their other side, enclose its volume.
   const TetMesh mesh = sample("layers");
   std::map<MaterialTag, double> expected, enclosed;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
@@ -80,7 +80,7 @@ TEST(Interfaces, CandidatesGiveTheSame) {
   ASSERT_GT(std::count(flagged.begin(), flagged.end(), 0), 0);
   EXPECT_EQ(find_interfaces(mesh, &flagged), all);
 
-  // Without a point there are none of its triangles.
+  // Without the flag of a point none of its triangles are found.
   const Index point = all[0].ids[0];
   flagged[point] = 0;
   std::vector<InterfaceTriangle> fewer = all;
@@ -92,7 +92,7 @@ TEST(Interfaces, CandidatesGiveTheSame) {
 }
 
 TEST(Interfaces, TheSameForAnyThreadsAndOrderOfTets) {
-  // Copies apart from each other: enough for several tasks.
+  // Many separate copies: enough for several tasks.
   const TetMesh one = sample("layers");
   const std::vector<InterfaceTriangle> of_one = find_interfaces(one);
   TetMesh mesh;

@@ -77,7 +77,7 @@ TEST(MeshCheck, UnusedPointsDegenerateAndDuplicateTets) {
   mesh.points.push_back({5, 5, 5});
   EXPECT_EQ(found(mesh), (Found{{"unused_points", 1}}));
   mesh = two_tets();
-  mesh.tets.push_back({2, 1, 3, 0});  // the first one with its vertices in another order
+  mesh.tets.push_back({2, 1, 3, 0});  // the first one with its vertices in a different order
   mesh.materials.push_back(1);
   EXPECT_EQ(found(mesh)[0], (std::pair<std::string, std::size_t>{"duplicate_tets", 1}));
   mesh = two_tets();

@@ -42,7 +42,7 @@ TEST(MeshStatistics, InterfacesAndTheEdgesWhereTheyMeet) {
   mesh.interfaces = find_interfaces(mesh);
   const MeshStatistics s = mesh_statistics(mesh);
   ASSERT_EQ(s.interfaces.size(), 3u);
-  // Two cubes of 4 x 4 x 4 cells side by side, two triangles to a cell's face.
+  // Two adjacent cubes of 4 x 4 x 4 cells, two triangles on each face of a cell.
   for (const auto& [pair, faces] : std::map<MaterialPair, int>{{{1, {}}, 5}, {{1, 2}, 1}, {{2, {}}, 5}}) {
     EXPECT_EQ(s.interfaces.at(pair).triangles, 32u * faces);
     EXPECT_NEAR(s.interfaces.at(pair).area, faces, 1e-13);

@@ -13,7 +13,7 @@ TEST(MidsideNodes, OneForEachEdgeHalfwayBetweenItsEnds) {
   TetMesh mesh = two_tets(2);
   mesh.interfaces = find_interfaces(mesh);
   const MidsideNodes nodes = straight_midside_nodes(mesh);
-  EXPECT_EQ(nodes.edges.size(), 9u);  // six of each, three of which they share
+  EXPECT_EQ(nodes.edges.size(), 9u);  // six edges of each tet, three of which are shared
   EXPECT_EQ(nodes.points.size(), 9u);
   const auto expect_between = [&](Index node, Index a, Index b) {
     EXPECT_EQ(nodes.points[node], Vec3(0.5 * (mesh.points[a] + mesh.points[b])));

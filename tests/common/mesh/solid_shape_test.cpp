@@ -76,7 +76,7 @@ TEST(SolidShape, CountsHandles) {
   EXPECT_EQ(shape.handles(), 2);
   EXPECT_EQ(shape.components(), 2u);
   EXPECT_EQ(solid_shape(one.points, one.triangles).handles(), 1);
-  EXPECT_NEAR(shape.volume(), 2 * 54, 1e-9);  // of the polygons, 2 * 59 of the round ones
+  EXPECT_NEAR(shape.volume(), 2 * 54, 1e-9);  // volume of the polygons; that of the round bodies is 2 * 59
 }
 
 TEST(SolidShape, PartsThatTouchInAPointAreTwo) {

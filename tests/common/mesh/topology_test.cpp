@@ -11,7 +11,7 @@ namespace {
 
 TetMesh sample(const char* name) { return std::get<TetMesh>(make_sample(name)); }
 
-/// The cells of a 3 x 3 x 3 box of cubes, six tets for each, without some of them.
+/// The sample of 4 x 4 x 4 cubes with six tets each, reduced to 3 x 3 x 3 and without some of its cells.
 TetMesh box_without(const std::vector<int>& cells) {
   TetMesh box = sample("tet_cube");  // 4 x 4 x 4
   TetMesh out{box.points, {}, {}, {}};

@@ -41,7 +41,7 @@ TEST(Parallel, ChunksComeOnceAndInOrderWithOneThread) {
   }
   const ThreadLimit eight(8);
   std::vector<int> visits(1000, 0);
-  std::vector<int> of_worker(8, 0);  // data of a worker needs no lock
+  std::vector<int> of_worker(8, 0);  // a worker's data need no lock
   parallel_chunks(visits.size(), [&](std::size_t chunk, unsigned worker) {
     ++visits[chunk];
     ++of_worker[worker];
@@ -113,7 +113,7 @@ TEST(Parallel, LimitsBelongToTheThreadThatSetsThem) {
   EXPECT_EQ(there, hardware_threads());
   EXPECT_EQ(within, 1u);
   EXPECT_EQ(thread_count(), 3u);
-  // Bodies of loops have the limit of the thread that started the loop.
+  // Loop bodies have the limit of the thread that started the loop.
   std::vector<unsigned> counts(100, 0);
   parallel_for(0, counts.size(), 1, [&](std::size_t begin, std::size_t) { counts[begin] = thread_count(); });
   EXPECT_EQ(std::count(counts.begin(), counts.end(), 3u), 100);

@@ -54,7 +54,7 @@ TEST(Samples, OrgansTouchInsideASkin) {
   const auto v = std::get<LabelVolume>(make_sample("organs"));
   ASSERT_EQ(v.labels.size(), 48u * 48 * 48);
   EXPECT_EQ(v.to_input(Vec3::Constant(23.5)), Vec3::Zero());
-  // Ingredients of the bits: any change of them shows here.
+  // Every change of these ingredients changes the bits.
   std::map<MaterialTag, int> counts;
   for (const MaterialTag label : v.labels) ++counts[label];
   EXPECT_EQ(counts,

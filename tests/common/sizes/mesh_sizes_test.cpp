@@ -20,7 +20,7 @@ std::vector<double> lengths_of(const Mesh& mesh) {
   return lengths;
 }
 
-/// The square (0, 0) to (1, 1) of the plane z = 0.
+/// The square from (0, 0) to (1, 1) in the plane z = 0.
 TriangleMesh square() { return {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}}; }
 
 std::vector<std::pair<Vec3, double>> values(const SizeSource& source) {
@@ -63,7 +63,7 @@ TEST(MeshSizes, PointsThatNothingUsesDoNotCount) {
   lengths.back() = std::nan("");
   const auto source = tet_mesh_sizes(mesh, lengths);
   EXPECT_EQ(values(*source).size(), used);
-  EXPECT_FALSE(source->at({1.1, 0.5, 0.5}));  // within a millionth of the distance of the far point
+  EXPECT_FALSE(source->at({1.1, 0.5, 0.5}));  // within reach only if the far point counted
 
   TriangleMesh surface = square();
   surface.points.insert(surface.points.begin(), {5, 5, 5});

@@ -12,7 +12,7 @@
 namespace tetwright::size_field_test {
 namespace {
 
-/// A function of the position, defined where it is above 0, and single values beside it.
+/// A function of the position, defined where it is above 0, with additional single values.
 class Source final : public SizeSource {
  public:
   explicit Source(std::function<double(const Vec3&)> f, std::vector<std::pair<Vec3, double>> values = {})
@@ -54,7 +54,7 @@ TEST(SizeField, GivesLinearSizesBack) {
 }
 
 TEST(SizeField, GrowsNoFasterThanTheGrading) {
-  // Small beyond a plane, ten times as large before it.
+  // Small beyond a plane, ten times as large in front of it.
   const SizeField field(Source([](const Vec3& p) { return p.x() > 2 ? 0.05 : 0.5; }), low, high, graded(0.3));
   EXPECT_NEAR(field.at({2.5, 2.5, 3.5}), 0.05, 1e-6);
   EXPECT_LE(field.at({1.2, 2.5, 3.5}), 0.05 + 0.3 * 0.8);
@@ -101,7 +101,7 @@ TEST(SizeField, FlatBoxesHaveSizes) {
   EXPECT_NEAR(field.at({0.3, 0.6, 0}), 0.13, 1e-6);
 }
 
-/// A square between planes of nodes, which answers with the distance from it.
+/// A square between planes of nodes, which returns the distance from it.
 class Sheet final : public SizeSource {
  public:
   explicit Sheet(double length) : length_(length) {}
@@ -120,7 +120,7 @@ class Sheet final : public SizeSource {
 };
 
 TEST(SizeField, OnASurfaceItIsWhatTheSurfaceSays) {
-  // Far smaller than the spacing of the nodes.
+  // Far smaller than the node spacing.
   const SizeField field(Sheet(1e-4), low, high, graded(0.5));
   Random random(7);
   for (int i = 0; i < 2000; ++i) {
@@ -128,7 +128,7 @@ TEST(SizeField, OnASurfaceItIsWhatTheSurfaceSays) {
     place -= Sheet::normal.dot(place - Sheet::middle) * Sheet::normal;
     if ((place.array() < low.array()).any() || (place.array() > high.array()).any()) continue;
     EXPECT_NEAR(field.at(place), 1e-4, 1e-8);
-    // It grows away from the square, from the next cell on.
+    // The length grows with the distance from the square, starting at the next cell.
     const Vec3 off = place + 0.2 * Sheet::normal;
     if ((off.array() > high.array()).any()) continue;
     EXPECT_LE(field.at(off), 0.1 + 1e-4);

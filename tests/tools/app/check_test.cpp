@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// `check`: what it prints, and its exit status.
+// Tests the output and the exit status of `check`.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -16,7 +16,8 @@
 namespace tetwright::check_test {
 namespace {
 
-/// A Medit file of one tet, given by its vertices from 1, and five points, of which the last is far away.
+/// A Medit file of five points and one tet, which is given by its vertices, from 1. The last point is far
+/// away.
 std::string medit(const std::string& tet) {
   return "MeshVersionFormatted 2\nDimension 3\nVertices\n5\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n5 5 5 0\n"
          "Tetrahedra\n1\n" +
@@ -52,7 +53,7 @@ TEST(Check, AnUnusedPointIsAWarning) {
   EXPECT_EQ(j["findings"][0]["name"], "unused_points");
   EXPECT_EQ(j["findings"][0]["severity"], "warning");
   EXPECT_EQ(j["mesh"]["tets"], 1);
-  // Commands that change such a mesh leave the point out.
+  // Commands that change such a mesh remove the point.
   ASSERT_LE(run("improve " + (f / "spare.mesh") + " -o " + (f / "out.vtu")).status, 1);
   EXPECT_EQ(run("check " + (f / "out.vtu")).out.find("warning"), std::string::npos);
 }
@@ -67,7 +68,7 @@ TEST(Check, UnsoundArraysHaveNoStatistics) {
   EXPECT_TRUE(degenerate.contains("mesh"));
 }
 
-/// The surface of a box from the origin, as an OFF file.
+/// Surface of a box with one corner at the origin, as an OFF file.
 std::string box_off(double x, double y, double z) {
   std::string text = "OFF\n8 12 0\n";
   for (int k = 0; k < 8; ++k)
@@ -92,8 +93,8 @@ TEST(Check, DistancesFromASurfaceAreProven) {
   EXPECT_TRUE(same["surface"]["solid"]["same"]);
   EXPECT_LT(same["surface"]["creases"]["max_distance"], 1e-5);
   EXPECT_EQ(same["surface"]["creases"]["corners"], 8);
-  // A quarter is missing at one end: 0.25 from the surface to the mesh; the mesh's end is half way between
-  // the surface's sides, and no farther from them than from the surface's end.
+  // A quarter is missing at one end, so the largest distance from the surface to the mesh is 0.25. The mesh's
+  // end is half way between the surface's sides, and no farther from them than from the surface's end.
   const Answer answer = run(check + (f / "longer.off") + " --json --tolerance 0.2");
   EXPECT_EQ(answer.status, 1);
   const auto longer = nlohmann::json::parse(answer.out);
@@ -110,7 +111,7 @@ TEST(Check, DistancesFromASurfaceAreProven) {
   EXPECT_NE(words.out.find("distance of the surface from the mesh: at most 0.25"), std::string::npos)
       << words.out;
   EXPECT_TRUE(words.out.ends_with("\nvalid, but not within the tolerance\n")) << words.out;
-  // --quiet prints shortfalls only.
+  // --quiet prints only shortfalls.
   const Answer quiet = run(check + (f / "longer.off") + " --tolerance 0.2 --quiet");
   EXPECT_EQ(quiet.status, 1);
   EXPECT_EQ(quiet.out, "");
@@ -119,8 +120,8 @@ TEST(Check, DistancesFromASurfaceAreProven) {
   EXPECT_EQ(run(check + (f / "box.off") + " --tolerance 0.2 --quiet").err, "");
 }
 
-/// The points of a prism with ten sides, whose edges turn by 36 degrees; those of the first one by less, if
-/// `first` is below 1. The axis comes last.
+/// Points of a prism with ten sides, whose edges turn by 36 degrees; the first one turns by less if `first`
+/// is below 1. The points of the axis come last.
 std::string decagon_points(double first, const std::string& after) {
   std::string text;
   for (int z = 0; z < 2; ++z)
@@ -167,7 +168,7 @@ TEST(Check, ACreaseIsNotLostForADegree) {
   const auto creases = nlohmann::json::parse(same.out)["surface"]["creases"];
   EXPECT_NEAR(creases["max_distance"], 0.01, 1e-4);
   EXPECT_EQ(creases["corners"], 20);
-  // It is farther than this, and what fails is named with its place.
+  // The distance is larger than this; the message names the bound that fails and its location.
   const Answer far = run(check + " --tolerance 0.005");
   EXPECT_EQ(far.status, 1);
   for (const char* said :
@@ -194,7 +195,7 @@ TEST(Check, AMeshWithoutTheCreasesIsNotWithinAnyTolerance) {
 }
 
 TEST(Check, EqualPointsOfASurfaceAreJoined) {
-  // A box of which each triangle has points of its own, some wound the other way.
+  // A box whose triangles have separate points; some are oriented inwards.
   const TemporaryFolder f;
   const std::string box = box_off(2, 1, 1);
   std::istringstream in(box);
@@ -266,7 +267,7 @@ TEST(Check, AnInvertedMeshIsNotAnotherSolid) {
 }
 
 TEST(Check, CapsAreLeftOutAndReported) {
-  // A box without its top, which the mesh closes.
+  // A box without its top face, which the mesh closes.
   const TemporaryFolder f;
   const std::string box = box_off(2, 1, 1), first = "3 4 5 6\n3 5 7 6\n";
   std::string open = box;
@@ -289,13 +290,13 @@ TEST(Check, CapsAreLeftOutAndReported) {
   EXPECT_NEAR(caps["area"], 2, 0.02);
   EXPECT_NEAR(caps["share"], 0.2, 0.002);
   EXPECT_NEAR(caps["upper"], 0.5, 0.01);
-  // Where most of the mesh is beyond the rim the surface is not the mesh's.
+  // If most of the mesh is beyond the rim, the surface does not belong to the mesh.
   put(f / "patch.off", "OFF\n4 2 0\n0 0 0\n0 0 1\n0 1 0\n0 1 1\n3 0 1 2\n3 1 3 2\n");
   const Answer patch = run("check " + (f / "box.vtu") + " --tolerance 1 --surface " + (f / "patch.off"));
   EXPECT_EQ(patch.status, 1) << patch.out;
   EXPECT_NE(patch.out.find("most of the mesh has no counterpart on the surface: "), std::string::npos)
       << patch.out;
-  // Deviations that are not beyond a rim count: the bottom is elsewhere.
+  // Deviations that are not beyond a rim count: the bottom face is moved.
   put(f / "lower.off", [&] {
     std::string text = open;
     for (const std::string from : {"0.000000\n"})

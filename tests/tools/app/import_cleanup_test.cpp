@@ -14,8 +14,8 @@
 namespace tetwright::import_cleanup_test {
 namespace {
 
-/// The cube sample with two fields on points (a linear one and their numbers) and three on tets, of which two
-/// are integers and neither has a name that means the material.
+/// The cube sample with two point fields (a linear one and the point numbers) and three cell fields; two of
+/// these are integers and neither has a name that stands for the material.
 TetMesh cube_with_fields() {
   TetMesh mesh = std::get<TetMesh>(make_sample("tet_cube"));
   mesh.point_fields = {{"linear", 2, false, {}}, {"number", 1, true, {}}};
@@ -43,16 +43,16 @@ TEST(ImportCleanup, FieldsAreCarriedOver) {
     const TetMesh out = read_tet_mesh(f / name).mesh;
     ASSERT_LT(out.tets.size(), mesh.tets.size());
     ASSERT_EQ(out.point_fields.size(), 2u);
-    const auto n = static_cast<std::size_t>(out.point_fields[0].components);  // .msh has 1, 3 or 9
+    const auto n = static_cast<std::size_t>(out.point_fields[0].components);  // .msh pads to 1, 3 or 9
     for (std::size_t i = 0; i < out.points.size(); ++i) {
-      // Points outside of the cube have the value of its nearest place.
+      // Points outside the cube have the value of its nearest point.
       EXPECT_NEAR(out.point_fields[0].values[n * i], std::clamp(out.points[i].x(), 0.0, 1.0), 1e-12);
       EXPECT_EQ(out.point_fields[0].values[n * i + 1], 1);
     }
     ASSERT_EQ(out.cell_fields.size(), 3u);
     EXPECT_EQ(out.cell_fields[2].values, std::vector<double>(out.tets.size(), 0.5));
   }
-  // `improve` keeps fields too. A mesh without fields gets none.
+  // `improve` also keeps fields. A mesh without fields gets none.
   ASSERT_LE(run("improve " + (f / "in.vtu") + " -o " + (f / "better.vtu")).status, 1);
   EXPECT_EQ(read_tet_mesh(f / "better.vtu").mesh.point_fields.size(), 2u);
   ASSERT_EQ(run("sample tet_cube -o " + (f / "plain.vtu")).status, 0);
@@ -70,7 +70,7 @@ TEST(ImportCleanup, TheFieldOfTheMaterials) {
   EXPECT_EQ(stats["input"]["material_field"], "region");
   ASSERT_EQ(stats["result"]["materials"].size(), 2u);
   EXPECT_EQ(stats["result"]["materials"][0]["tag"], 5);
-  // The result has the field as its material, which `check` treats alike.
+  // The result has the field as its material; `check` treats both in the same way.
   EXPECT_EQ(
       run("check " + (f / "out.vtu") + " --before " + (f / "in.vtu") + " --material-field region").status, 0);
   EXPECT_EQ(run("check " + (f / "out.vtu") + " --before " + (f / "in.vtu")).status, 1);
@@ -88,7 +88,7 @@ TEST(ImportCleanup, TheFieldOfTheMaterials) {
 TEST(ImportCleanup, MeshesOfOtherProgramsAreMadeCoherent) {
   const TemporaryFolder f;
   TetMesh mesh = std::get<TetMesh>(make_sample("two_materials"));
-  // A pair of TetGen files in which every second tet is reversed and each tet has points of its own.
+  // A pair of TetGen files in which every second tet is inverted and each tet has separate points.
   std::string node = std::to_string(4 * mesh.tets.size()) + " 3 0 0\n";
   std::string ele = std::to_string(mesh.tets.size()) + " 4 1\n";
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
@@ -119,7 +119,7 @@ TEST(ImportCleanup, MeshesOfOtherProgramsAreMadeCoherent) {
   EXPECT_EQ(run("check " + (f / "out.vtu")).status, 0);
   expect_refused("simplify " + (f / "m.ele") + " -o " + (f / "out.ply") + " --target-tets 10", 2,
                  {"\".ply\" for a tet mesh", ".vtu .msh .mesh"});
-  // If all tets have a repeated vertex, nothing is left.
+  // If all tets have a repeated vertex, no tet is left.
   put(f / "flat.node", "4 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n");
   put(f / "flat.ele", "2 4\n0 0 1 2 2\n1 3 1 3 2\n");
   expect_refused("improve " + (f / "flat.node") + " -o " + (f / "x.vtu"), 3, {"flat.node", "vertex twice"});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// `improve`, and the options that it shares with `simplify`, through the program.
+// Tests `improve`, and the options that it shares with `simplify`, through the program.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -76,7 +76,7 @@ TEST(Improve, AnAngleThatCannotBeHadIsStatusOneAndWritten) {
 TEST(Improve, FixBoundaryKeepsTheBoundaryAndInterfaces) {
   const TemporaryFolder f;
   ASSERT_EQ(run("sample two_materials -o " + (f / "m.mesh")).status, 0);
-  /// The boundary and interface triangles of a file by their coordinates.
+  /// Boundary and interface triangles of a file, by their coordinates.
   const auto triangles = [&](const std::string& path) {
     const TetMesh mesh = read_tet_mesh(path).mesh;
     std::vector<std::vector<std::array<double, 3>>> out;
@@ -101,7 +101,7 @@ TEST(Improve, FixBoundaryKeepsTheBoundaryAndInterfaces) {
 
 TEST(Improve, TetsThatStayBelowOnlyBelowAreReported) {
   const TemporaryFolder f;
-  // A single flat tet, whose shape no operation can change.
+  // A single flat tet whose shape no operation can change.
   put(f / "flat.mesh",
       "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 0.001 0\n"
       "Tetrahedra\n1\n1 2 3 4 1\nEnd\n");
@@ -174,7 +174,7 @@ TEST(Simplify, ATargetThatTopologyForbidsSaysWhichRules) {
   const std::string rules = json_of(f / "s.json")["shortfall"][0]["held_back_by"];
   EXPECT_NE(a.err.find(rules), std::string::npos) << rules;
   EXPECT_EQ(run("check " + (f / "o.vtu") + " --before " + (f / "m.vtu")).status, 0);
-  // The number of iterations is a limit too.
+  // The number of iterations is also a limit.
   const Answer b =
       run("simplify " + (f / "m.vtu") + " -o " + (f / "o.vtu") + " --target-tets 4 --max-iterations 1");
   EXPECT_EQ(b.status, 1);

@@ -12,7 +12,7 @@ namespace {
 
 class Limits : public ::testing::Test {
  protected:
-  /// The statistics of a run, which must end with this status.
+  /// Statistics of a run, which must end with this status.
   nlohmann::json stats(const std::string& arguments, int status) {
     const Answer a = run(arguments + " --stats " + (f / "s.json"));
     EXPECT_EQ(a.status, status) << arguments << "\n" << a.err;
@@ -46,7 +46,7 @@ TEST_F(Limits, WhatThereIsAtTheEndIsAValidMesh) {
   const double whole =
       stats("simplify " + (f / "d.vtu") + " --target-tets 1000 -o " + (f / "w.vtu"), 0)["seconds"]["total"];
   const double read = stats("check " + (f / "d.vtu"), 0)["seconds"]["read"];
-  // At any moment; the earliest may come before the mesh is read.
+  // At several times; the first may be before the mesh is read.
   int ended_early = 0, simplified = 0;
   for (const double share : {0.15, 0.3, 0.5, 0.8}) {
     const double limit = read + share * (whole - read);
@@ -65,7 +65,7 @@ TEST_F(Limits, WhatThereIsAtTheEndIsAValidMesh) {
   }
   EXPECT_GT(ended_early, 0);
   EXPECT_GT(simplified, 0);
-  // A limit that is never reached changes no byte.
+  // A limit that is never reached does not change a byte.
   ASSERT_EQ(
       run("simplify " + (f / "d.vtu") + " --target-tets 1000 -o " + (f / "l.vtu") + " --time-limit 1e30")
           .status,
@@ -73,7 +73,7 @@ TEST_F(Limits, WhatThereIsAtTheEndIsAValidMesh) {
   EXPECT_EQ(contents(f / "l.vtu"), contents(f / "w.vtu"));
 }
 
-// Time is kept for writing as long as reading takes, without the time that the input takes to come.
+// Time is reserved for writing, as long as reading took, without the time spent waiting for the input.
 TEST_F(Limits, WaitingForTheInputIsNoReading) {
   ASSERT_EQ(run("sample knot -o " + (f / "s.ply")).status, 0);
   ASSERT_EQ(run("mesh " + (f / "s.ply") + " --resolution 32 --accept-changes -o " + (f / "d.vtu")).status, 0);
@@ -90,7 +90,7 @@ TEST_F(Limits, AToleranceIsComparedAlsoWhenTimeEnds) {
   ASSERT_EQ(run("sample torus -o " + (f / "s.ply")).status, 0);
   ASSERT_EQ(run("mesh " + (f / "s.ply") + " --resolution 24 --accept-changes -o " + (f / "d.vtu")).status, 0);
   const std::string call = "simplify " + (f / "d.vtu") + " --tolerance 1% -o " + (f / "o.vtu");
-  // A limit that ends it early, however busy the machine is.
+  // Find a limit that ends the run early, however busy the machine is.
   const double most = 2 * stats(call, 0)["seconds"]["total"].get<double>();
   double low = 0, high = most;
   for (int attempt = 0; attempt < 40; ++attempt) {
@@ -106,7 +106,7 @@ TEST_F(Limits, AToleranceIsComparedAlsoWhenTimeEnds) {
     }
     const auto j = nlohmann::json::parse(contents(f / "s.json"));
     ASSERT_TRUE(shortfall(j, "time_limit"));
-    // Held, though there may have been no time to prove it.
+    // The tolerance is met, though there may have been no time to prove it.
     const auto& held = j["tolerance"];
     EXPECT_LE(held["from_mesh"]["lower"], held["distance"]) << a.err;
     EXPECT_LE(held["from_surface"]["lower"], held["distance"]) << a.err;
@@ -126,12 +126,12 @@ TEST_F(Limits, MemoryMakesCellsLarger) {
   const auto limited = stats(call + " --memory-limit 0.075", 1);
   ASSERT_TRUE(shortfall(limited, "memory_limit")) << err;
   EXPECT_LT(limited["dense"]["resolution"], free["dense"]["resolution"]);
-  EXPECT_LT(limited["peak_bytes"].get<double>(), 0.1 * (1 << 30));  // by estimate, which is within 25 %
+  EXPECT_LT(limited["peak_bytes"].get<double>(), 0.1 * (1 << 30));  // by an estimate, which is within 25 %
   EXPECT_EQ(run("check " + (f / "o.vtu")).status, 0);
-  // Cells that were asked for are refused.
+  // Cells that were requested are rejected.
   expect_refused(call + " --resolution 400 --memory-limit 0.075", 5, {"GB are available"});
   expect_refused("check " + (f / "o.vtu") + " --memory-limit 0.01", 5, {"checking its", "GB are available"});
-  // And volumes, whose cells are their voxels.
+  // So are volumes, whose cells are their voxels.
   ASSERT_EQ(run("sample organs -o " + (f / "v.nrrd")).status, 0);
   expect_refused("mesh " + (f / "v.nrrd") + " -o " + (f / "v.vtu") + " --voxel-size 0.2 --memory-limit 0.075",
                  5, {"GB are available"});

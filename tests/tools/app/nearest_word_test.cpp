@@ -13,10 +13,10 @@ TEST(NearestWord, CountsTypingErrors) {
   EXPECT_EQ(typing_errors("mesh", "mesh"), 0u);
   EXPECT_EQ(typing_errors("", "mesh"), 4u);
   EXPECT_EQ(typing_errors("mesh", ""), 4u);
-  EXPECT_EQ(typing_errors("msh", "mesh"), 1u);    // missing
-  EXPECT_EQ(typing_errors("meesh", "mesh"), 1u);  // too many
-  EXPECT_EQ(typing_errors("mash", "mesh"), 1u);   // another
-  EXPECT_EQ(typing_errors("mehs", "mesh"), 1u);   // swapped
+  EXPECT_EQ(typing_errors("msh", "mesh"), 1u);    // missing letter
+  EXPECT_EQ(typing_errors("meesh", "mesh"), 1u);  // additional letter
+  EXPECT_EQ(typing_errors("mash", "mesh"), 1u);   // wrong letter
+  EXPECT_EQ(typing_errors("mehs", "mesh"), 1u);   // swapped letters
   EXPECT_EQ(typing_errors("kitten", "sitting"), 3u);
   EXPECT_EQ(typing_errors("sitting", "kitten"), 3u);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Named patches and solids, from file to file.
+// Tests named patches and solids, from file to file.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -15,7 +15,7 @@
 namespace tetwright::patches_test {
 namespace {
 
-/// A box as solids of an STL file: its side z = `high` is the solid `lid`, unless that is empty.
+/// A box as solids of an STL file; its side z = `high` is the solid `lid`, unless that is empty.
 std::string box(double low, double high, const std::string& name, const std::string& lid = "") {
   const auto solid = [&](const std::string& called, std::initializer_list<std::array<int, 4>> quads) {
     std::ostringstream out;
@@ -106,7 +106,7 @@ TEST(Patches, OfBoxesThatTouchLeaveGoodShapes) {
   const Answer a =
       run("prepare " + (f / "box.stl") + " " + (f / "case.stl") + " --target-tets 3000 -o " + (f / "a.msh"));
   const TetMesh mesh = read_tet_mesh(f / "a.msh").mesh;
-  EXPECT_LT(mesh_statistics(mesh, 0.1).below_percent, 5);  // with exact creases more than 30
+  EXPECT_LT(mesh_statistics(mesh, 0.1).below_percent, 5);  // more than 30 with exact creases
   std::set<std::string> names;
   for (const auto& [patch, group] : mesh.patch_groups) names.insert(group.name);
   EXPECT_TRUE(names.contains("wall") && names.contains("side") && names.contains("outlet")) << a.err;
@@ -136,7 +136,7 @@ TEST(Patches, SolidsWithoutANameHaveNumbers) {
   EXPECT_LE(split.status, 1) << split.err;
   EXPECT_EQ(read_tet_mesh(f / "out.msh").mesh.material_names,
             (std::map<MaterialTag, std::string>{{1, "two_1"}, {2, "two_2"}}));
-  // A made-up name gives way to one that is given.
+  // A generated name gives way to a given one.
   write(f / "c.stl", box(2, 3, "c_2", " "));
   const Answer taken =
       run("mesh " + (f / "a.stl") + " " + (f / "c.stl") + " --resolution 12 -o " + (f / "out.msh"));
@@ -145,7 +145,7 @@ TEST(Patches, SolidsWithoutANameHaveNumbers) {
   for (const char* name : {"a_1", "a_2", "c_2", "c_2_2"}) EXPECT_GT(faces_named(three, name), 0U) << name;
 }
 
-/// The six sides of a box as solids, called as OpenFOAM's users call them.
+/// The six sides of a box as solids, with names as OpenFOAM's users choose them.
 std::string sides(const Vec3& low, const Vec3& high) {
   std::ostringstream out;
   for (int axis = 0; axis < 3; ++axis)
@@ -224,7 +224,7 @@ TEST(Patches, OfOneNameInSeveralFilesAreQualifiedByTheirBody) {
   EXPECT_LE(b.status, 1) << b.err;
   EXPECT_EQ(names_in(read_tet_mesh(f / "b.msh").mesh), names);
 
-  // Formats of solvers have the form of names that they can hold.
+  // In formats of solvers names have the form that the format can hold.
   for (const std::string format : {".inp", ".feb", ".bdf", ".mesh", ".vtk", ".xdmf"}) {
     const Answer c = run("simplify " + (f / "a.msh") + " --target-tets 3000 -o " + (f / "c" + format));
     EXPECT_LE(c.status, 1) << c.err;
@@ -250,7 +250,7 @@ TEST(Patches, OfOneNameInBoxesSideBySideAreQualified) {
   EXPECT_LE(a.status, 1) << a.err;
   const TetMesh mesh = read_tet_mesh(f / "a.msh").mesh;
   const std::set<std::string> all = qualified({"left", "right"}), names = names_in(mesh);
-  // Both sides of the interface lie on it, and one of them may get all of it.
+  // Both sides of the interface lie on it, and one of them may get all of its faces.
   EXPECT_GE(names.size(), all.size() - 1);
   for (const std::string& name : names) EXPECT_TRUE(all.contains(name)) << name;
 }
@@ -288,7 +288,7 @@ TEST(Patches, SolidsOfOneNameInTwoFilesAreTwoMaterials) {
   EXPECT_EQ(names_in(mesh), std::set<std::string>(side_names.begin(), side_names.end()));
 }
 
-/// A surface with the name of a tissue for each polygon, as VTK writes text: a number for each character and
+/// A surface with the name of a tissue for each polygon, as VTK writes text: a number for each character, and
 /// a zero at the end.
 std::string vtp_with_names(const std::vector<Vec3>& points, const std::vector<std::vector<int>>& polygons,
                            const std::vector<std::string>& names) {

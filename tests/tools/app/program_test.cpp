@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The program as a whole: commands, exit statuses, messages, files.
+// Tests the program as a whole: commands, exit statuses, messages, files.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -60,7 +60,7 @@ TEST(Program, OneThreadAndOneSeedGiveTheSameFile) {
             .status,
         0);
   EXPECT_EQ(contents(f / "a.mesh"), contents(f / "b.mesh"));
-  // The dense mesh does not depend on the threads at all.
+  // The dense mesh does not depend on the number of threads.
   for (const char* threads : {"1", "2"})
     ASSERT_EQ(run("mesh " + (f / "torus.obj") + " -o " + (f / threads) +
                   ".mesh --resolution 24 --accept-changes --threads " + threads)
@@ -106,7 +106,7 @@ TEST(Program, AnInterruptLeavesNothingBehind) {
   const TemporaryFolder f;
   ASSERT_EQ(run("sample knot -o " + (f / "k.off")).status, 0);
   const std::size_t files = f.entries();
-  // During the work, and while the program waits for input that never arrives.
+  // Both during the work and while the program waits for input that never arrives.
   const std::string prefix = "timeout --preserve-status -s INT ";
   const Answer working =
       run("prepare " + (f / "k.off") + " -o " + (f / "k.vtu") + " --target-tets 500000", "", prefix + "0.5");
@@ -143,17 +143,17 @@ TEST(Program, WhatAFileHoldsBesideTheMeshIsNamed) {
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0]["what"], "ridges");
   EXPECT_EQ(findings[0]["count"], 2);
-  // Interface triangles are restored, so that they are not reported as dropped.
+  // Interface triangles are restored, so they are not reported as dropped.
   ASSERT_EQ(run("sample two_materials -o " + (f / "two.msh")).status, 0);
   ASSERT_EQ(run("improve " + (f / "two.msh") + " -o " + (f / "better.msh") + " --quiet").status, 0);
   EXPECT_EQ(run("check " + (f / "better.msh") + " --json").err, "");
   EXPECT_NE(run("check " + (f / "better.msh")).err.find("(found again from the materials)"),
             std::string::npos);
-  // Cells of other kinds are refused, since they would be missing from the body.
+  // Cells of other kinds are rejected, since they would be missing in the body.
   put(f / "hexa.mesh", head + tets + "Hexahedra\n1\n1 2 3 4 1 2 3 4 0\nEnd\n");
   expect_refused("check " + (f / "hexa.mesh"), 3,
                  {"hexa.mesh: line 12: 1 hexahedra", "convert them to tets"});
-  // Surfaces drop faces of fewer than three vertices and say so.
+  // Surfaces drop faces with fewer than three vertices, and report it.
   put(f / "t.off", tetrahedron_off);
   std::string with_edge = tetrahedron_off + "2 0 1\n";
   with_edge.replace(4, 5, "4 5 6");
@@ -244,7 +244,7 @@ TEST(Program, MaterialsLayersAndLevelSets) {
   EXPECT_EQ(first.at("the core").first, 2);
   EXPECT_EQ(first.at("skin").first, 3);
   EXPECT_GT(first.at("skin").second, 0);
-  // The fields that were meshed give the same materials again.
+  // The written fields give the same materials again.
   const Answer again =
       run("mesh " + (f / "fields.vdb") + " --voxel-size 0.08 --accept-changes -o " + (f / "again.vtu"));
   ASSERT_EQ(again.status, 0) << again.err;
@@ -305,11 +305,11 @@ TEST(Program, WhatCannotBeWrittenIsStatusFive) {
   ASSERT_EQ(run("sample sphere -o " + (f / "s.off")).status, 0);
   const std::string mesh = "mesh " + (f / "s.off") + " --resolution 16 -o ";
   expect_refused(mesh + (f / "no/such/folder.vtu"), 5, {"folder"});
-  // A file size limit of 16 blocks acts as a full disk does. The existing file must stay.
+  // A file size limit of 16 blocks acts like a full disk. The existing file must be kept.
   put(f / "old.vtu", "precious");
   expect_refused(mesh + (f / "old.vtu"), 5, {"old.vtu"}, "ulimit -f 16;");
   EXPECT_EQ(contents(f / "old.vtu"), "precious");
-  EXPECT_EQ(f.entries(), 2u);  // no temporary is left behind
+  EXPECT_EQ(f.entries(), 2u);  // no temporary file is left behind
   // The folder is checked before any work: the broken input is not read.
   put(f / "broken.off", "nothing");
   expect_refused("mesh " + (f / "broken.off") + " -o " + (f / "no/out.vtu"), 5, {});
@@ -334,10 +334,10 @@ TEST(Program, ShortOfTheTargetIsStatusOneAndWritten) {
   EXPECT_NE(a.err.find("held back by"), std::string::npos) << a.err;
   EXPECT_EQ(run("check " + (f / "s.vtu") + " --before " + (f / "d.vtu")).status, 0);
   EXPECT_EQ(nlohmann::json::parse(contents(f / "s.json"))["shortfall"][0]["what"], "target_tets");
-  // A target above the count of the mesh.
+  // A target above the mesh's number of tets.
   expect_refused("simplify " + (f / "d.vtu") + " -o " + (f / "x.vtu") + " --target-tets 100000000", 2,
                  {"100000000"});
-  // A solid angle that was asked for and cannot be reached.
+  // A solid angle that was requested and cannot be reached.
   EXPECT_EQ(
       run("simplify " + (f / "d.vtu") + " -o " + (f / "s.vtu") + " --target-tets 2000 --min-solid-angle 0.5")
           .status,

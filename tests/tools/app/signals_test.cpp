@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Signals at any time of a run: the status is 130, and the files that the program writes are either complete
-// or untouched. Whether a signal arrives in time is read from the state of the process, never assumed from a
-// delay.
+// Tests signals at any time of a run: the status is 130, and the files that the program writes are either
+// complete or unchanged. Whether a signal arrives in time is read from the state of the process, never
+// inferred from a delay.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -47,7 +47,7 @@ TEST_F(Signals, BeforeTheWorkBegins) {
     for (const std::vector<std::string>& arguments :
          {std::vector<std::string>{"mesh", in("pipe.off"), "-o", in("out.vtu")},
           std::vector<std::string>{"check", in("pipe.msh")}}) {
-      // Nobody writes into the pipe: the program is waiting for it or has not opened it yet.
+      // No process writes to the pipe: the program is waiting for it or has not opened it yet.
       Process process = start(arguments);
       process.wait_for_main();
       process.send(signal);
@@ -61,7 +61,7 @@ TEST_F(Signals, WhileAPipeIsRead) {
   ASSERT_EQ(mkfifo(in("pipe.off").c_str(), 0600), 0);
   for (const int signal : ending_signals) {
     Process process = start({"mesh", in("pipe.off"), "-o", in("out.vtu")});
-    std::ofstream writer(in("pipe.off"));  // opens when the program does
+    std::ofstream writer(in("pipe.off"));  // opens once the program does
     writer << "OFF\n4 4 6\n" << std::flush;
     process.send(signal);
     EXPECT_EQ(process.wait(), interrupted) << signal;
@@ -73,7 +73,7 @@ TEST_F(Signals, WhileAPipeIsRead) {
 TEST_F(Signals, AnIgnoredHangUpStaysIgnored) {
   ASSERT_EQ(run("sample sphere -o " + in("s.off")).status, 0);
   ASSERT_EQ(mkfifo(in("pipe.off").c_str(), 0600), 0);
-  std::signal(SIGHUP, SIG_IGN);  // children inherit it
+  std::signal(SIGHUP, SIG_IGN);  // inherited by child processes
   Process process =
       start({"mesh", in("pipe.off"), "-o", in("out.vtu"), "--resolution", "8", "--accept-changes"});
   std::signal(SIGHUP, SIG_DFL);
@@ -83,7 +83,7 @@ TEST_F(Signals, AnIgnoredHangUpStaysIgnored) {
   EXPECT_EQ(process.wait(), 0) << err();
 }
 
-/// Signals at times spread over a whole run: all files are as before, or all are complete.
+/// Signals at times distributed over a whole run: either all files are unchanged, or all are complete.
 TEST_F(Signals, AtManyMoments) {
   ASSERT_EQ(run("sample torus -o " + in("torus.off")).status, 0);
   const std::vector<std::string> call{
@@ -119,23 +119,23 @@ TEST_F(Signals, AtManyMoments) {
   EXPECT_GT(ended_early, 0);
 }
 
-/// The program is stopped as soon as it has begun to write, gets its signals, and goes on.
+/// The program is stopped as soon as it has begun to write, receives its signals, and continues.
 TEST_F(Signals, WhileAFileIsWritten) {
   ASSERT_EQ(run("sample sphere -o " + in("s.off")).status, 0);
   for (const char* extension : {"vtu", "msh"})
     for (const int signal : ending_signals) {
       const std::string out = in(std::string("out.") + extension);
       int caught = 0;
-      // The program may have finished its file before it is stopped: then it is run again.
+      // The program may have finished its file before it is stopped; it is then run again.
       for (int attempt = 0; attempt < 50 && caught == 0; ++attempt) {
         put(out, "old");
-        // One thread, so that the test has a processor to watch it from.
+        // One thread, so that the test has a processor to observe it from.
         Process process = start({"mesh", in("s.off"), "-o", out, "--resolution", "48", "--threads", "1"});
         while (temporary_files(in("")) == 0 && !process.ended()) std::this_thread::yield();
         if (process.stop()) {
           const bool writing = temporary_files(in("")) == 1;
           process.send(signal);
-          process.send(signal == SIGINT ? SIGTERM : SIGINT);  // a second one changes nothing
+          process.send(signal == SIGINT ? SIGTERM : SIGINT);  // a second signal changes nothing
           process.send(SIGCONT);
           const int status = process.wait();
           EXPECT_EQ(status, interrupted) << extension << " " << signal << " " << err();

@@ -10,7 +10,8 @@
 namespace tetwright::sizes_test {
 namespace {
 
-/// A tet around everything near the origin, with one size at its first vertex and another one at the others.
+/// A tet that contains the surroundings of the origin, with one size at its first vertex and another at the
+/// others.
 std::string tet_with_sizes(double first, double others) {
   const std::string rest = std::to_string(others);
   return "# vtk DataFile Version 3.0\nsizes\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n"
@@ -60,7 +61,7 @@ TEST_F(Sizes, WinOverACount) {
 }
 
 TEST_F(Sizes, BoundsHold) {
-  const auto j = prepare("--max-edge 0.4 --target-tets 300", 1);  // more tets than asked for
+  const auto j = prepare("--max-edge 0.4 --target-tets 300", 1);  // more tets than the target
   EXPECT_EQ(j["edge_lengths"]["above_max"], 0);
   EXPECT_LE(j["edge_lengths"]["longest"], 0.4);
 }
@@ -70,7 +71,7 @@ TEST_F(Sizes, EdgesAreSplitHoweverMuchTooLongTheyAre) {
   ASSERT_EQ(run("sample tet_cube -o " + cube).status, 0);
   const Answer a =
       run("simplify " + cube + " -o " + out + " --target-tets 100 --max-edge 0.1 --stats " + (f / "s.json"));
-  EXPECT_EQ(a.status, 1) << a.err;  // more tets than asked for, and nothing else
+  EXPECT_EQ(a.status, 1) << a.err;  // more tets than the target, and nothing else
   const auto j = nlohmann::json::parse(contents(f / "s.json"));
   EXPECT_EQ(j["edge_lengths"]["above_max"], 0) << a.err;
   EXPECT_EQ(j["shortfall"].size(), 1u) << a.err;
@@ -91,7 +92,7 @@ TEST_F(Sizes, BadValuesSayWhatToDo) {
   expect_refused(call + "--size-field " + field, 3, {"size.vtk", "0"});
   put(field, tet_with_sizes(-1, 0.2));
   expect_refused(call + "--size-field " + field, 3, {"size.vtk", "-1"});
-  // Ends within the body.
+  // The field ends within the body.
   std::string half = tet_with_sizes(0.1, 0.1);
   half.replace(half.find("27 -9 -9"), 8, "0. -9 -9");
   put(field, half);

@@ -172,10 +172,10 @@ TEST_F(SolverFormats, NoFileReplacesAnother) {
   expect_refused(call + (f / "no") + "/m.node", 5, {"no"});
   expect_refused(call + (f / "m.vtk") + " --output-format xdmf", 2,
                  {"m.vtk: xdmf is several files", ".xdmf"});
-  // The files beside an output count, too.
+  // The other files of an output are checked, too.
   expect_status("sample two_materials -o " + (f / "x.ele"), 0);
   expect_refused("prepare " + (f / "x.ele") + " --target-tets 9 -o " + (f / "x.node"), 2, {"x.ele"});
-  // An input may be replaced by -o of simplify, and fields that a format cannot hold are said.
+  // An input may be replaced by -o of simplify; fields that a format cannot hold are reported.
   EXPECT_NE(run("simplify " + (f / "x.node") + " --target-tets 100 -o " + (f / "x.node")).status, 2);
 }
 

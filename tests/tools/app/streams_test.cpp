@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Standard input and output as files.
+// Tests standard input and output as files.
 #include <gtest/gtest.h>
 
 #include "tests/tools/program.h"
@@ -8,7 +8,7 @@
 namespace tetwright::streams_test {
 namespace {
 
-/// Runs a pipeline of the shell, whose commands call the program "$t".
+/// Runs a shell pipeline whose commands call the program as "$t".
 Answer shell(const std::string& pipeline) {
   const TemporaryFolder folder;
   const std::string command =
@@ -28,7 +28,7 @@ TEST(Streams, AreReadAndWrittenLikeFiles) {
     EXPECT_EQ(a.status, 0) << a.err;
     EXPECT_NE(contents(f / "s.vtu").find("VTKFile"), std::string::npos);
   }
-  // From one command to the next, with nothing in between.
+  // Directly from one command to the next.
   const Answer a =
       shell("$t mesh " + (f / "t.ply") + " --resolution 16 -o - --output-format msh41-binary --quiet" +
             " | $t simplify - --input-format msh --target-tets 500 -o - --output-format medit" +

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// --tolerance of prepare, simplify and mesh.
+// Tests --tolerance of prepare, simplify and mesh.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -34,7 +34,7 @@ TEST_F(Tolerance, TakesAsFewTetsAsHoldItAllWellShaped) {
     EXPECT_GT(j["result"]["tets"], last) << share;
     last = j["result"]["tets"];
     EXPECT_LT(last, 2000U) << share;
-    // Says so of the file, too.
+    // `check` of the file reports the same.
     EXPECT_EQ(run("check " + out + " --surface " + surface + " --tolerance " + share).status, 0);
   }
 }

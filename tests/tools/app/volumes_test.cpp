@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Segmented volumes through the program.
+// Tests segmented volumes through the program.
 #include <gtest/gtest.h>
 
 #include <openvdb/io/File.h>
@@ -25,7 +25,7 @@ class Volumes : public testing::Test {
     return "mesh " + inputs + " -o " + path("out.vtu") + " --stats " + path("s.json");
   }
 
-  /// Expects the status, one line on stderr that contains each of `said`, and no new file but statistics.
+  /// Expects the status, one line on stderr that contains each of `said`, and no new file except statistics.
   void expect_refused(const std::string& inputs, int status, const std::vector<std::string>& said) const {
     std::filesystem::remove(path("s.json"));
     const std::size_t files = folder_.entries();
@@ -39,7 +39,7 @@ class Volumes : public testing::Test {
     EXPECT_EQ(folder_.entries(), files) << inputs;
   }
 
-  /// A NRRD of 2 x 2 x 2 voxels of one byte, with lines of the header replaced or added.
+  /// Writes an NRRD of 2 x 2 x 2 voxels of one byte, with header lines replaced or added.
   std::string write_small(const std::string& name, const std::string& type, const std::string& more,
                           const std::string& body) const {
     put(path(name), "NRRD0004\ntype: " + type + "\nencoding: raw\nendian: little\n" + more + "\n" + body);
@@ -49,8 +49,8 @@ class Volumes : public testing::Test {
   TemporaryFolder folder_;
 };
 
-/// Cells of almost three voxels, which do not keep volumes. The tests that use them do not depend on the cell
-/// size.
+/// Cells of almost three voxels, which do not preserve volumes. The tests that use them do not depend on the
+/// cell size.
 const std::string coarse = " --voxel-size 2 --uniform --accept-changes";
 const std::string cube = "dimension: 3\nsizes: 2 2 2\n";
 
@@ -85,21 +85,21 @@ TEST_F(Volumes, ReportAndStatistics) {
     const double expected = label["volume"];
     EXPECT_NEAR(expected, label["voxels"].get<double>() * 0.75 * 0.75 * 1.25, 1e-9 * expected);
   }
-  // There are interfaces between materials and with the outside.
+  // There are interfaces between materials and on the boundary.
   const auto interfaces = stats["result"]["interfaces"];
   EXPECT_EQ(stats["dense"]["interfaces"], interfaces);
   EXPECT_GT(interfaces.size(), 4u);
   EXPECT_GT(stats["result"]["junction_edges"], 0);
   EXPECT_TRUE(std::any_of(interfaces.begin(), interfaces.end(),
                           [](const auto& i) { return i["materials"][1].is_null(); }));
-  // `check` of the file counts the same interfaces.
+  // `check` counts the same interfaces in the file.
   const auto checked = nlohmann::json::parse(run("check --json " + path("out.vtu")).out)["mesh"];
   EXPECT_EQ(checked["interfaces"], interfaces);
   EXPECT_EQ(checked["junction_edges"], stats["result"]["junction_edges"]);
 }
 
 TEST_F(Volumes, TheFieldsThatWereMeshed) {
-  // Without the skin: level sets of a sheet thinner than a cell have nearly no volume.
+  // Without the skin: level sets of a sheet thinner than a cell have hardly any volume.
   const std::string cells = " --voxel-size 1 --uniform";
   const std::string organs = mesh(path("organs.nrrd")) + cells + " --labels 1-3,5";
   ASSERT_EQ(run(organs + " --write-sdf " + path("fields.vdb")).status, 0);
@@ -111,7 +111,7 @@ TEST_F(Volumes, TheFieldsThatWereMeshed) {
     const double volume = first[m]["volume"];
     EXPECT_EQ(again["materials"][m]["name"], first[m]["name"]);
     EXPECT_NEAR(again["materials"][m]["volume"].get<double>(), volume, 0.08 * volume)
-        << m;  // ten cells across
+        << m;  // ten cells thick
   }
 }
 
@@ -213,7 +213,7 @@ TEST_F(Volumes, ALostLabelIsStatusOneAndNamed) {
   EXPECT_EQ(shortfall[0]["asked"], 2);
   EXPECT_EQ(shortfall[0]["reached"], 1);
   EXPECT_TRUE(std::filesystem::exists(path("out.vtu")));
-  // It is kept on request, though not its volume.
+  // It is kept on request, but its volume is not preserved.
   const Answer kept = run(mesh(path("lost.nrrd")) + " --quiet --min-voxels 1");
   EXPECT_EQ(kept.status, 1);
   EXPECT_EQ(kept.err.rfind("tetwright: not the solid of the input: 'label_9' has volume ", 0), 0u)
@@ -249,10 +249,10 @@ TEST_F(Volumes, LabelsAreComparedWithTheirVoxels) {
   EXPECT_EQ(same[1]["expected"]["components"], nlohmann::json({1, 1}));
   EXPECT_EQ(same[1]["result"]["components"], 1);
   EXPECT_TRUE(same[1]["same"]);
-  // Outside that is meshed is no cavity.
+  // An outside that is meshed is not a cavity.
   EXPECT_EQ(compared(" --keep-outside", 0).size(), 1u);
 
-  // Cells of seven voxels show neither the gap nor the cavity.
+  // Cells of seven voxels resolve neither the gap nor the cavity.
   const auto different = compared(" --voxel-size 7 --uniform", 1);
   EXPECT_EQ(different[0]["result"]["components"], 1);
   EXPECT_FALSE(different[0]["same"]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Calls that are wrong: the status and what the message says.
+// Tests invalid calls: the status and the message.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -38,7 +38,7 @@ TEST(WrongCalls, AreStatusTwo) {
   for (const char* number : {" 5", "5 ", "5 %", "0x5", "+5", "1e-400", "1e400", "inf"})
     expect_refused("prepare " + in + " -o " + out + " --tolerance '" + number + "'", 2,
                    {"--tolerance: '" + std::string(number) + "' is not a "});
-  // Two outputs through links to one file that is not there yet.
+  // Two outputs through links to the same file, which does not exist yet.
   for (const char* link : {"link.vtu", "link.json"}) std::filesystem::create_symlink("real", f / link);
   expect_refused("mesh " + in + " -o " + (f / "link.vtu") + " --stats " + (f / "link.json"), 2,
                  {"link.json is also the file of -o"});
@@ -58,7 +58,7 @@ TEST(WrongCalls, NameTheNearestCommandAndOption) {
   expect_refused("mesh a.off -o b.vtu --resolutoin=5", 2,
                  {"--resolutoin of mesh", "nearest is --resolution"});
   expect_refused("simplify a.vtu b.vtu -o c.vtu --target-tets 5", 2, {"simplify takes one MESH; 'b.vtu'"});
-  // Arguments after -- are names; the error is the value before it.
+  // Arguments after -- are names; the error is in the value before it.
   expect_refused("check --threads=0 -- a.vtu", 2, {"--threads", "'0'"});
   expect_refused("mesh a.off -o b.vtu -o c.vtu", 2, {"--output was given more than once"});
   expect_refused("--verson", 2, {"no option --verson;", "nearest is --version"});

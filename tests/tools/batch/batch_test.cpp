@@ -27,7 +27,7 @@ class Batch : public ::testing::Test {
                .dump() +
            "\n";
   }
-  /// The lines of the results by id; each id once.
+  /// Lines of the results by id; each id must occur once.
   std::map<std::string, nlohmann::json> results() {
     std::map<std::string, nlohmann::json> lines;
     std::istringstream in(contents(f / "jobs.results.jsonl"));
@@ -56,9 +56,9 @@ TEST_F(Batch, EachJobHasItsStatusAndStatistics) {
   EXPECT_EQ(lines["lost"]["status"], 3);
   EXPECT_NE(lines["lost"]["messages"][0].get<std::string>().find("nowhere.ply"), std::string::npos);
   EXPECT_EQ(lines["typo"]["status"], 2);
-  EXPECT_EQ(lines["6"]["status"], 3);  // named by its line
+  EXPECT_EQ(lines["6"]["status"], 3);  // the id is its line number
   EXPECT_NE(a.err.find("3 of 5 jobs"), std::string::npos) << a.err;
-  // The bytes of a run of its own.
+  // Gives the same bytes as a separate run.
   ASSERT_EQ(
       run("prepare " + (f / "c.ply") + " --resolution 8 --target-tets 300 -o " + (f / "alone.vtu")).status,
       0);
@@ -70,19 +70,19 @@ TEST_F(Batch, GoesOnWhereItEnded) {
   ASSERT_EQ(batch().status, 0);
   const std::string first = contents(f / "jobs.results.jsonl");
   put(f / "a.vtu", "touched");
-  // Part of a line, as a kill leaves it.
+  // Part of a line, as left by a kill.
   put(f / "jobs.results.jsonl", first + R"({"args":["prep)");
   put(f / "jobs.jsonl", job("a", "300") + job("b", "300") + job("c", "400"));
   ASSERT_EQ(batch().status, 0);
   EXPECT_EQ(contents(f / "a.vtu"), "touched");
   EXPECT_EQ(contents(f / "jobs.results.jsonl").rfind(first, 0), 0u);
   EXPECT_EQ(results().size(), 3u);
-  // A whole line counts also without its end, as editors may leave it.
+  // A complete line without its line end, as editors may leave it, also counts.
   const std::string whole = contents(f / "jobs.results.jsonl");
   put(f / "jobs.results.jsonl", whole.substr(0, whole.size() - 1));
   ASSERT_EQ(batch().status, 0);
   EXPECT_EQ(contents(f / "jobs.results.jsonl"), whole);
-  // Other arguments make another job of it.
+  // Different arguments make it a different job.
   put(f / "jobs.jsonl", job("a", "500"));
   ASSERT_EQ(batch().status, 0);
   EXPECT_NE(contents(f / "a.vtu"), "touched");
@@ -92,7 +92,7 @@ TEST_F(Batch, RetriesWhatFailed) {
   put(f / "jobs.jsonl", job("a", "300", "later.ply"));
   EXPECT_EQ(batch().status, 1);
   ASSERT_EQ(run("sample cube -o " + (f / "later.ply")).status, 0);
-  EXPECT_EQ(batch().status, 1);  // finished: bad input
+  EXPECT_EQ(batch().status, 1);  // finished with an input error
   EXPECT_EQ(batch("--retry").status, 0);
 }
 
@@ -121,7 +121,7 @@ TEST_F(Batch, RefusesWhatIsNoBatch) {
           {"reads", "'a' writes"});
   refused(job("a", "300") + R"({"args": ["check", "x.vtu", "--before", ")" + (f / "a.vtu") + R"("]})",
           {"reads", "'a' writes"});
-  // Two jobs write one file, which does not exist yet, once through a link.
+  // Two jobs write the same file, which does not exist yet; one of them through a link.
   std::filesystem::create_symlink("real.vtu", f / "link.vtu");
   refused(R"({"args": ["improve", "x.vtu", "-o", ")" + (f / "link.vtu") + R"("]})" + "\n" +
               R"({"args": ["improve", "x.vtu", "-o", ")" + (f / "real.vtu") + R"("]})",
@@ -132,7 +132,7 @@ TEST_F(Batch, RefusesWhatIsNoBatch) {
   expect_refused("batch - --results " + jobs, 2, {"no stream"});
   expect_refused("batch " + jobs + " --results " + jobs, 2, {"also an input"});
   expect_refused("batch " + jobs + " --stats " + (f / "s.json"), 2, {"--stats"});
-  // A file that is something else is not written to.
+  // A file with other contents is not written to.
   put(f / "jobs.results.jsonl", "my notes\n");
   expect_refused("batch " + jobs, 3, {"jobs.results.jsonl", "line 1"});
   EXPECT_EQ(contents(f / "jobs.results.jsonl"), "my notes\n");
@@ -143,7 +143,7 @@ TEST_F(Batch, RefusesWhatIsNoBatch) {
   }
 }
 
-/// Waits until a process reads the pipe, and gives the end to write to.
+/// Waits until a process reads the pipe, and returns the end to write to.
 int open_when_read(const std::string& pipe, Process& process) {
   int file = -1;
   while ((file = open(pipe.c_str(), O_WRONLY | O_NONBLOCK)) < 0 && !process.ended()) wait_a_moment();
@@ -161,7 +161,7 @@ TEST_F(Batch, AJobThatCrashesEndsAlone) {
     const int end = open_when_read(pipe, process);
     ASSERT_GE(end, 0) << contents(f / "err");
     ASSERT_GT(process.child(), 0);
-    // A temporary file as the process leaves it when killed while writing.
+    // A temporary file, as left by a process killed while writing.
     const std::string left = f / (".tetwright-" + std::to_string(process.child()) + "-7.tmp");
     put(left, "part of a mesh");
     kill(process.child(), signal);
@@ -191,9 +191,9 @@ TEST_F(Batch, WhatRanBesideACrashIsDoneAgain) {
   ASSERT_GT(first, 0);
   kill(first, SIGKILL);
   for (const int end : ends) close(end);
-  // Until it has gone it may still read.
+  // Until it has ended it may still read.
   while ((process.child() == first || process.child() == 0) && !process.ended()) wait_a_moment();
-  // Each alone: the second one is read when the first has ended.
+  // Each alone: the second pipe is read once the first job has ended.
   for (const std::string& pipe : pipes) close(open_when_read(pipe, process));
   EXPECT_EQ(process.wait(), 1) << contents(f / "err");
   auto lines = results();
@@ -223,7 +223,7 @@ TEST_F(Batch, ASecondCrashLeavesTheOthersTheirTurn) {
   for (const std::string& pipe : pipes) ends.push_back(open_when_read(pipe, process));
   kill_child(ends);
   kill_child({open_when_read(pipes[0], process)});
-  // Not the two that are left at once.
+  // The two remaining jobs must not run concurrently.
   const int q = open_when_read(pipes[1], process);
   std::this_thread::sleep_for(std::chrono::milliseconds(200));
   EXPECT_LT(open(pipes[2].c_str(), O_WRONLY | O_NONBLOCK), 0);
@@ -245,7 +245,7 @@ TEST_F(Batch, EndsWithTheProcessThatWasStarted) {
     const int end = open_when_read(pipe, process);
     process.send(signal);
     EXPECT_EQ(process.wait(), signal == SIGKILL ? 1000 + SIGKILL : 130);
-    // Nobody reads any more, though there is one who writes.
+    // No process reads any more, although one writes.
     int reader = 0;
     for (int moments = 0; moments < 20000 && (reader = open(pipe.c_str(), O_WRONLY | O_NONBLOCK)) >= 0;
          ++moments) {
@@ -259,7 +259,7 @@ TEST_F(Batch, EndsWithTheProcessThatWasStarted) {
 }
 
 TEST_F(Batch, JobsOfOneLibraryDoNotMeet) {
-  // HDF5 shares open files of one name among threads.
+  // HDF5 shares open files of the same name between threads.
   std::string jobs;
   for (const int tets : {200, 300, 400, 500, 600, 700}) {
     const std::string name = std::to_string(tets);
@@ -291,7 +291,7 @@ TEST_F(Batch, LimitsAreThoseOfTheJobs) {
   EXPECT_EQ(results()["1"]["status"], 5);
   EXPECT_NE(results()["1"]["messages"][0].get<std::string>().find("in stage '"), std::string::npos);
   EXPECT_EQ(results()["1"]["messages"][0].get<std::string>().find("in stage ''"), std::string::npos);
-  // Each of several jobs has its share of the memory.
+  // The memory is divided among concurrent jobs.
   put(f / "jobs.jsonl", job("a", "300") + job("b", "300"));
   EXPECT_EQ(batch("--memory-limit 0.05 --jobs 2 --threads 2").status, 1);
   const std::map<std::string, nlohmann::json> shares = results();

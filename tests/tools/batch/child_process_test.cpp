@@ -28,7 +28,7 @@ TEST(ChildProcess, IsWaitedForAlsoWhereChildrenAreIgnored) {
 }
 
 TEST(ChildProcess, GetsTheSignalsOfItsParent) {
-  // Its own handler ends it; the parent goes on.
+  // The child's own handler ends it; the parent continues.
   struct sigaction before {
   }, ending{};
   ending.sa_handler = [](int) { _exit(130); };
@@ -52,7 +52,7 @@ TEST(ChildProcess, ASignalThatFindsItDyingIsNotLost) {
     sigset_t term;
     sigemptyset(&term);
     sigaddset(&term, SIGTERM);
-    sigprocmask(SIG_BLOCK, &term, nullptr);  // it does not take effect here
+    sigprocmask(SIG_BLOCK, &term, nullptr);  // the signal has no effect in this process
     kill(getppid(), SIGTERM);
     return raise(SIGKILL);
   });

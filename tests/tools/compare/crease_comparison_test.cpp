@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Whether a mesh has the creases of its input, and what the program says of them.
+// Tests whether a mesh has the creases of its input, and what the program reports about them.
 #include "tetwright/compare.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ TEST(CreaseComparison, MeasuresFromThePlacesOfTheInput) {
   EXPECT_EQ(same.max_distance, 0);
   EXPECT_EQ(same.corners, 8U);
   EXPECT_EQ(same.lost_corners, 0U);
-  // A crease that the mesh does not have, across a side.
+  // A crease across a side, which the mesh does not have.
   const auto first = static_cast<Index>(creases.points.size());
   creases.points.emplace_back(2, 0, 0);
   creases.points.emplace_back(2, 4, 0);
@@ -49,14 +49,14 @@ TEST(CreaseComparison, MeasuresFromThePlacesOfTheInput) {
   EXPECT_GT(other.p99_distance, 1);
   EXPECT_EQ(other.lost_corners, 1U);
   EXPECT_NEAR((other.lost_corner - Vec3(2.5, 2.5, 0)).norm(), 0, 1e-12);
-  // A mesh without creases is as far from all as it is long.
+  // For a mesh without creases the distance is the diagonal.
   TetMesh smooth = mesh;
   for (InterfaceTriangle& t : smooth.interfaces) t.patch = 0;
   EXPECT_EQ(compare_creases(mesh_creases(mesh), smooth).max_distance, same.diagonal);
 }
 
 TEST(CreaseComparison, BoundsWhatLiesBetweenTheMeasuredPlaces) {
-  // A crease with a gap that no measured place is in: its middle is 1.2e-4 from both ends.
+  // A crease with a gap that contains no sample: its middle is 1.2e-4 from both ends.
   CreaseCurves expected, found;
   expected.points = {{0, 0, 0}, {1, 0, 0}};
   expected.segments = {{0, 1}};
@@ -93,7 +93,7 @@ TEST(CreaseComparison, IsSaidOfPartsAndNotOfScans) {
   EXPECT_FALSE(stats.contains("creases"));
   EXPECT_LT(stats["result"]["volume"].get<double>(), 8 - 1e-3);
 
-  // Tet meshes keep their features likewise.
+  // Tet meshes keep their features in the same way.
   ASSERT_EQ(run("mesh " + (f / "cube.off") + " --resolution 16 -o " + (f / "dense.vtu")).status, 0);
   a = run("simplify " + (f / "dense.vtu") + " --target-tets 500 -o " + (f / "o.vtu") + " --stats " +
           (f / "s.json"));
@@ -109,7 +109,7 @@ TEST(CreaseComparison, IsSaidOfPartsAndNotOfScans) {
   stats = nlohmann::json::parse(contents(f / "s.json"));
   EXPECT_EQ(stats["features"][0]["verdict"], "smooth");
 
-  // Few edges turn far, and most of them meet no other one.
+  // Few edges turn by much, and most of them do not meet another one.
   TriangleMesh scan = read_surface(f / "ball.off");
   Random random(3);
   for (Vec3& p : scan.points) p *= 1 + 0.025 * (random.uniform() - 0.5);
@@ -131,7 +131,7 @@ TEST(CreaseComparison, IsSaidOfPartsAndNotOfScans) {
 }
 
 TEST(CreaseComparison, LostCreasesAreAShortfall) {
-  // A ridge so low that only an angle of two degrees tells it, in cells six times as high.
+  // A ridge so low that it is found only with an angle of two degrees, in cells six times as high.
   const TemporaryFolder f;
   std::ofstream(f / "wedge.off") << "OFF\n6 5 9\n0 0 0\n1 0 0\n0.5 0.02 0\n0 0 1\n1 0 1\n0.5 0.02 1\n"
                                     "3 0 2 1\n3 3 4 5\n4 0 1 4 3\n4 1 2 5 4\n4 2 0 3 5\n";
@@ -157,7 +157,7 @@ TEST(CreaseComparison, KnowsWhatCarvesAndWhatTouches) {
   const TemporaryFolder f;
   put_cube(f / "a.off", 0, 1, 0);
   put_cube(f / "b.off", 0, 1, 1);        // touches the first one
-  put_cube(f / "c.off", 0.2, 0.8, 0.5);  // carves it
+  put_cube(f / "c.off", 0.2, 0.8, 0.5);  // carves the first one
   for (const char* other : {"b.off", "c.off"}) {
     const Answer a = run("mesh " + (f / "a.off") + " --material b=" + (f / other) + " --resolution 20 -o " +
                          (f / "o.vtu"));

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double degree = std::numbers::pi / 180;
 
-/// A wedge between two planes that meet in the x axis, of tets of about the same length.
+/// A wedge between two planes that meet in the x axis, filled with tets of about the same length.
 TetMesh wedge(double angle, int length) {
   TetMesh mesh;
   for (int i = 0; i <= length; ++i) {
@@ -39,7 +39,8 @@ CreaseCurves edge_of_wedge(int length) {
 }
 
 TEST(InputLimited, NarrowestWedges) {
-  // About as wide as the solid angle while both are small, since cones of tets are then half as high as wide.
+  // Approximately equal to the solid angle while both are small, since the cones of tets are then half as
+  // high as wide.
   EXPECT_NEAR(narrowest_wedge(0.1) / degree, 6.3, 0.5);
   EXPECT_GT(narrowest_wedge(0.3), 2.5 * narrowest_wedge(0.1));
   EXPECT_LE(narrowest_wedge(0.55), std::acos(1.0 / 3));
@@ -51,11 +52,11 @@ TEST(InputLimited, AreThoseInWedgesThatAreTooNarrow) {
     const TetMesh mesh = wedge(degrees * degree, length);
     const std::size_t bad = mesh_statistics(mesh, 0.1).below_count;
     ASSERT_EQ(bad, mesh.tets.size());
-    // All of them have an edge on the crease, but one in three.
+    // All of them except one in three have an edge on the crease.
     EXPECT_EQ(input_limited_tets(mesh, edge_of_wedge(length), 0.1),
               degrees < 6 ? static_cast<std::size_t>(length) : 0U);
     EXPECT_EQ(input_limited_tets(mesh, {}, 0.1), 0U);
-    // A crease elsewhere holds nothing.
+    // A crease elsewhere limits nothing.
     CreaseCurves elsewhere = edge_of_wedge(length);
     for (Vec3& p : elsewhere.points) p.z() -= 1;
     EXPECT_EQ(input_limited_tets(mesh, elsewhere, 0.1), 0U);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Whether a mesh is the solid of its input, and what the program says where it is not.
+// Tests whether a mesh is the solid of its input, and what the program reports if it is not.
 #include "tetwright/compare.h"
 
 #include <gtest/gtest.h>
@@ -61,22 +61,22 @@ TEST(SolidComparison, WhatAFlawedSurfaceSaysIsAnEstimateOfTwo) {
   constexpr double v = 1.0 / 6;
   ExpectedSolid e = expected({{.volume = v, .handles = 1}});
   EXPECT_TRUE(compare_solids({e}, one_tet()).at(0).certain);
-  // By the distances alone nothing is certain.
+  // With the distances only, nothing is certain.
   e.flaw = SurfaceFlaw::intersecting;
   const auto compared = [&] { return compare_solids({e}, one_tet()).at(0); };
   EXPECT_FALSE(compared().same());
   EXPECT_FALSE(compared().certain);
   EXPECT_EQ(compared().against, SolidComparison::Against::distances);
-  // As the surface says.
+  // The result agrees with the surface.
   e.by_flawed_surface.emplace().shells = {{.volume = v}};
   EXPECT_TRUE(compared().same());
   EXPECT_FALSE(compared().certain);
   EXPECT_EQ(compared().against, SolidComparison::Against::surface);
-  // As neither of them says.
+  // The result agrees with neither of them.
   e.by_flawed_surface->shells = {{.volume = v, .handles = 2}};
   EXPECT_EQ(compared().difference, "0 handles instead of 1");
   EXPECT_FALSE(compared().certain);
-  // As both of them do not say.
+  // Both of them agree, and the result differs.
   e.by_flawed_surface->shells = {{.volume = v * 1.005, .handles = 1}};
   EXPECT_EQ(compared().difference, "0 handles instead of 1");
   EXPECT_TRUE(compared().certain);
@@ -141,14 +141,14 @@ TEST(SolidComparison, TheProgramSaysWhereTheSolidIsAnotherOne) {
   EXPECT_EQ(stats()["shortfall"].at(0)["what"], "notes");
 }
 
-/// A plate of 10 x 10 and this thickness.
+/// A plate of 10 x 10 and thickness `thickness`.
 void write_plate(const std::string& path, double thickness) {
   std::ofstream out(path);
   std::size_t first = 1;
   write_box(out, first, Vec3(0, 0, 0), Vec3(10, 10, thickness));
 }
 
-/// Has narrow dents, and intersects itself where a point is beyond its neighbour.
+/// A ball with narrow dents; it intersects itself where a point is moved beyond its neighbour.
 TriangleMesh dented_ball() {
   TriangleMesh ball = make_sphere(1, Vec3::Zero(), 5);
   for (Vec3& p : ball.points)
@@ -181,7 +181,7 @@ TEST(SolidComparison, ADifferenceFromAnEstimateIsANoteAndNoStatus) {
     std::size_t first = 1;
     write_box(body, first, Vec3(0, 0, 0), Vec3(10, 10, 10));
     first = 1;
-    // Leaves a plate thinner than a cell and a thick one.
+    // Leaves one plate thinner than a cell and a thick one.
     write_box(later, first, Vec3(0.5, -1, -1), Vec3(7, 11, 11));
   }
   const std::string call = "mesh " + (f / "body.obj") + " " + (f / "later.obj") + " -o " + (f / "o.vtu") +
@@ -266,7 +266,7 @@ TEST(SolidComparison, WhatStaysTooThickOrClosedIsSaidWithItsPlace) {
   ASSERT_EQ(stats["dense"]["closed_gaps"].size(), 1U);
   EXPECT_EQ(stats["dense"]["closed_gaps"][0]["kind"], "gap");
   EXPECT_FALSE(stats["dense"]["closed_gaps"][0]["on_purpose"]);
-  // As asked: a note.
+  // As requested: a note.
   a = run(boxes + " --min-gap 5%");
   EXPECT_EQ(a.status, 0) << a.err;
   EXPECT_NE(a.err.find("closed by --min-gap"), std::string::npos) << a.err;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program of another project: it makes a mesh as the README shows.
+// A program of another project that makes a mesh as shown in the README.
 #include <tetwright/prepare.h>
 
 #include <cstdio>

@@ -16,7 +16,7 @@ TEST(LimitingRules, NamesTheMainRulesWithTheirShares) {
   put(c, Operation::collapse, Outcome::surface_error, 30);
   put(c, Operation::collapse, Outcome::inverts, 5);
   put(c, Operation::collapse, Outcome::quality, 4);
-  // Outcomes that are no refusals, and another operation.
+  // Outcomes that are not refusals, and another operation.
   put(c, Operation::collapse, Outcome::done, 500);
   put(c, Operation::collapse, Outcome::conflict, 500);
   put(c, Operation::collapse, Outcome::stale, 500);

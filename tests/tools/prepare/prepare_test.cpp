@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The library does the program's whole job: the same bytes as the program and the Python package, for files
-// and values in memory; and it is a good guest: silent, with oneTBB's limits as they were, soon cancelled,
-// and callable from several threads at a time. This program links nothing of the program's own.
+// Tests that the library gives the same bytes as the program and the Python package, for files and for values
+// in memory; that it prints nothing, leaves oneTBB's limits unchanged, is cancelled promptly, and can be
+// called from several threads at the same time. This test links none of the program's own sources.
 #include "tetwright/prepare.h"
 
 #include <fcntl.h>
@@ -43,7 +43,7 @@ PrepareOptions small_target() {
   PrepareOptions options;
   options.target.tets = 800;
   options.cells.resolution = 20;
-  options.acceptance.accept_changes = true;  // cells are large for what they hold
+  options.acceptance.accept_changes = true;  // cells are large compared with the body's features
   return options;
 }
 const std::string small_target_words = " --target-tets 800 --resolution 20 --accept-changes";
@@ -99,7 +99,7 @@ TEST(Prepare, ValuesInMemoryGiveTheBytesOfTheirFiles) {
   options = {};
   options.target.tets = 2000;
   options.cells.size = 3;
-  options.labels.meshed = {{1, 3}, {5, 5}};  // not the skin of a voxel, which takes long
+  options.labels.meshed = {{1, 3}, {5, 5}};  // without the skin of one voxel, which takes long
   options.acceptance.accept_changes = true;
   values.clear();
   values.emplace_back("organs", Input::Value(read_label_volume(organs)));
@@ -147,7 +147,7 @@ TEST(Prepare, WritesNothingToTheStandardStreams) {
     options.target.tolerance = Length{3, true};
     options.acceptance.strict = true;
     std::vector<Input> one;
-    one.emplace_back("open", surface("open_sphere"));  // has findings
+    one.emplace_back("open", surface("open_sphere"));  // causes findings
     const Prepared made = prepare(std::move(one), options);
     EXPECT_TRUE(made.falls_short());
     EXPECT_FALSE(made.diagnostics().empty());
@@ -157,7 +157,7 @@ TEST(Prepare, WritesNothingToTheStandardStreams) {
   EXPECT_EQ(written_to(STDERR_FILENO, work), "");
 }
 
-/// Calls a function with the stage that begins.
+/// Calls a function with each stage that begins.
 class Watch : public Progress {
  public:
   explicit Watch(std::function<void(Watch&)> at_stage) : at_stage_(std::move(at_stage)) {}
@@ -190,7 +190,7 @@ TEST(Prepare, LeavesTheLimitsOfOneTbbAsTheyAre) {
   EXPECT_EQ(thread_count(), hardware_threads());
 }
 
-/// Processor time of this process, seconds: what others do on the machine does not count.
+/// Processor time of this process, seconds; the load of other processes does not count.
 double processor_seconds() {
   timespec t{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
@@ -210,7 +210,7 @@ TEST(Prepare, EndsWithinASecondOnceItIsCancelled) {
     Watch watch([&](Watch& w) {
       if (w.stages != stage) return;
       canceller = std::thread([&w, &cancelled_at] {
-        // In the middle of the stage, where it is a long one.
+        // In the middle of the stage, if it is a long one.
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
         cancelled_at = processor_seconds();
         w.cancel();

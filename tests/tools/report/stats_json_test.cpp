@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Every key that --stats writes is in the schema, and every key that the schema requires is written.
+// Tests that every key written by --stats is in the schema, and that every key required by the schema is
+// written.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -57,7 +58,7 @@ TEST(StatsJson, FollowsItsSchema) {
                              " --tolerance 2% --max-edge 20% --target-tets 2000");
   EXPECT_TRUE(bounded["tolerance"]["held"]);
   EXPECT_GT(bounded["edge_lengths"]["edges"], 0);
-  // The schema refuses unknown keys and wrong types.
+  // The schema rejects unknown keys and wrong types.
   j["surprise"] = 1;
   EXPECT_NE(violations(j), "");
   j.erase("surprise");
@@ -98,7 +99,7 @@ TEST(CheckJson, FollowsItsSchema) {
 
 TEST(CheckJson, PlacesAreCoordinates) {
   const TemporaryFolder f;
-  // The second tet is inverted, and the last point is not used.
+  // The second tet is inverted, and the last point is unused.
   put(f / "bad.mesh",
       "MeshVersionFormatted 2\nDimension 3\nVertices 6\n0 0 0 0\n3 0 0 0\n0 3 0 0\n0 0 3 0\n0 0 -3 0\n"
       "9 9 9 0\nTetrahedra 2\n1 2 3 4 1\n1 2 3 5 1\nEnd\n");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// A program of another project that improves a mesh of its own and reads no files.
+// A program of another project that improves its own mesh and reads no files.
 #include <cstdio>
 
 #include <tetwright/simplify.h>

@@ -162,7 +162,7 @@ struct SurfaceWithFields {
 
 /// Input of a writer of tet meshes: a view that must not outlive the mesh and the nodes.
 struct MeshToWrite {
-  // NOLINTNEXTLINE(google-explicit-constructor): every mesh is something to write
+  // NOLINTNEXTLINE(google-explicit-constructor): every mesh can be written
   MeshToWrite(const TetMesh& of_mesh, const MidsideNodes* nodes = nullptr) : mesh(of_mesh), midside(nodes) {}
 
   const TetMesh& mesh;

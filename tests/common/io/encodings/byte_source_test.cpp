@@ -68,7 +68,7 @@ TEST(ByteSource, WhatEndsBeforeItsChecksumIsRefused) {
       const std::string message = error_of<InputError>([&] { source.check_end(); });
       EXPECT_EQ(message.find("f: the compressed data end early"), 0u) << message;
     }
-  // The bytes after those taken are checked, too.
+  // The bytes after those that were taken are checked, too.
   std::string packed = deflated(bytes + std::string(100000, 'b'));
   packed.pop_back();
   ByteSource source(packed, Packing::deflate, "f");

@@ -74,7 +74,7 @@ TEST(MeshFields, TheMaterialAskedFor) {
   EXPECT_EQ(read.material_field, "region");
   EXPECT_EQ(read.mesh.cell_fields, (std::vector<MeshField>{{"material", 1, true, {5, 6}}}));
   EXPECT_TRUE(read.mesh.material_names.empty());
-  // It replaces the format's own materials, which become a field.
+  // It replaces the format's own materials, which become an ordinary field.
   read = with_fields({{"region", 1, false, {3, 4}}}, "medit:ref");
   take_material(read, {.material_field = "region"}, "f");
   EXPECT_EQ(read.mesh.materials, (std::vector<MaterialTag>{3, 4}));

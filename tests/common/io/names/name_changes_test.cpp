@@ -42,7 +42,7 @@ TEST(NameChanges, TagsAndNumbersOutsideOfEightDigits) {
   EXPECT_TRUE(c.patch_numbers.empty());
   mesh.patch_groups.begin()->second.number = -4;
   EXPECT_EQ(written_name_changes(mesh, "m.msh").patch_numbers.size(), 1u);
-  EXPECT_TRUE(written_name_changes(mesh, "m.inp").patch_numbers.empty());  // names alone
+  EXPECT_TRUE(written_name_changes(mesh, "m.inp").patch_numbers.empty());  // only names
 }
 
 TEST(NameChanges, NamesThatAFormatCannotHold) {
@@ -52,7 +52,7 @@ TEST(NameChanges, NamesThatAFormatCannotHold) {
   EXPECT_EQ(texts(written_name_changes(mesh, "m.inp").material_names),
             (Texts{R"("a'b" -> "a_b")", R"("a b" -> "a_b_2")"}));
   EXPECT_EQ(texts(written_name_changes(mesh, "m.mesh").patch_names), Texts{R"("in let" -> "in_let")"});
-  EXPECT_TRUE(written_name_changes(mesh, "m.meshb").patch_names.empty());  // it has no names
+  EXPECT_TRUE(written_name_changes(mesh, "m.meshb").patch_names.empty());  // the format has no names
   EXPECT_TRUE(written_name_changes(mesh, "m.vtk").material_names.empty());
   mesh.material_names = {{-7, R"(a"b)"}, {1, R"(a\b)"}};
   EXPECT_EQ(texts(written_name_changes(mesh, "m.msh").material_names),
@@ -61,7 +61,7 @@ TEST(NameChanges, NamesThatAFormatCannotHold) {
   for (const char* file : {"m.vtk", "m.bdf", "m.xdmf", "m.node"})
     EXPECT_EQ(texts(written_name_changes(mesh, file).material_names), Texts{R"("same" -> "same_2")"}) << file;
   EXPECT_TRUE(written_name_changes(mesh, "m.vtu").material_names.empty());
-  mesh.material_names = {{-7, ""}};  // an empty name; that of material 1 is a default
+  mesh.material_names = {{-7, ""}};  // an empty name; material 1 has a default name
   EXPECT_EQ(texts(written_name_changes(mesh, "m.vtk").material_names), Texts{R"("" -> "material_-7")"});
 }
 

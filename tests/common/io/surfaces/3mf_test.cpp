@@ -7,7 +7,7 @@
 namespace tetwright::three_mf_test {
 namespace {
 
-/// A tet with its corner at the origin, as the mesh of an object.
+/// A tet with one corner at the origin, as the mesh of an object.
 const std::string tet_mesh =
     "<mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/>"
     "<vertex x=\"0\" y=\"1\" z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"1\"/></vertices><triangles>"

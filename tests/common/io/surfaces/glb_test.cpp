@@ -26,7 +26,7 @@ std::string glb(const json& scene, const std::string& binary) {
   return out + std::string("BIN\0", 4) + numbers;
 }
 
-/// A tet with duplicate vertices, as where normals differ, followed by 16-bit indices.
+/// A tet with duplicate vertices, as written if normals differ, followed by 16-bit indices.
 std::string tet_bytes() {
   std::string bytes;
   for (int twice = 0; twice < 2; ++twice)
@@ -192,7 +192,7 @@ TEST(Glb, BadInput) {
   refused({{"/buffers/0/uri", "a.bin"}}, "another file");
   refused({{"/accessors/0/sparse", json::object()}}, "sparse");
   refused({{"/extensionsRequired", {"KHR_materials_unlit", "EXT_mesh_gpu_instancing"}}}, "gpu_instancing");
-  // Draco keeps the numbers elsewhere: the accessors have no buffer views.
+  // Draco stores the numbers elsewhere: the accessors have no buffer views.
   json draco = tet_scene();
   draco["extensionsRequired"] = {"KHR_draco_mesh_compression"};
   for (json& accessor : draco["accessors"]) accessor.erase("bufferView");

@@ -52,7 +52,7 @@ TEST(Obj, ObjectsGroupsAndMaterialsThatDifferAreGroups) {
             (std::vector<SurfaceRegion>{{0, "b"}, {0, "c d"}}));
   EXPECT_EQ(groups("o a\ng b\nusemtl m\n" + face + "o c\nusemtl n\n" + face),
             (std::vector<SurfaceRegion>{{0, "a:m"}, {0, "c:n"}}));
-  // Joined names may coincide.
+  // Different combinations may give the same joined name.
   expect_input_error(read_obj, points + "o A:b\ng c\n" + face + "o A\ng b:c\n" + face,
                      "o \"A:b\", g \"c\" and those of o \"A\", g \"b:c\"", "\"A:b:c\"");
   expect_input_error(read_obj, points + "g a\n" + face + "o a\ng\n" + face, "g \"a\" and those of o \"a\"");

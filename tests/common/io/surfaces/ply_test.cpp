@@ -137,7 +137,7 @@ TEST(Ply, BadInput) {
       read_ply,
       "ply\nformat ascii 1.0\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n",
       "line 3", "strips");
-  // Elements without properties take no bytes, however many there are.
+  // Elements without properties take no bytes, whatever their count.
   expect_input_error(read_ply,
                      "ply\nformat ascii 1.0\nelement a 9000000000000000000\nelement vertex 0\nproperty float "
                      "x\nproperty float y\n"
@@ -165,7 +165,7 @@ TEST(Ply, LabelsOfFacesAreGroups) {
     ASSERT_EQ(dropped.size(), 1u);
   }
   expect_input_error(read_ply, text("property int label", "x"), "label of a face", "\"x\"");
-  // Names are in comments, as write_ply() writes them; two groups do not get one.
+  // Names are in comments, as written by write_ply(); two groups must not get the same name.
   const std::string named = "comment surface 7: in: let\ncomment surface 3: in: let\ncomment surface x: a\n";
   EXPECT_EQ(read_ply(text(named + "comment\nproperty int surface", "7"), "f").groups,
             (std::vector<SurfaceRegion>{{3, ""}, {7, "in: let"}}));

@@ -31,7 +31,7 @@ std::string labels(const std::string& name, const std::string& type) {
   return "<DataArray type=\"" + type + "\" Name=\"" + name + "\" format=\"ascii\">9 2 5</DataArray>";
 }
 
-/// Text as VTK has it: each with a zero at its end.
+/// Text as VTK stores it: each text ends with a zero byte.
 std::string zero_terminated(const std::vector<std::string>& texts) {
   std::string bytes;
   for (const std::string& text : texts) bytes += text + '\0';
@@ -43,7 +43,7 @@ std::string text_array(const std::string& format, const std::string& content,
   return "<Array type=\"String\" Name=\"" + name + "\" format=\"" + format + "\">" + content + "</Array>";
 }
 
-/// A number for each byte.
+/// Texts as ascii: a number for each byte.
 std::string ascii_texts(const std::vector<std::string>& texts, const std::string& name = "Names") {
   std::string numbers;
   for (const char c : zero_terminated(texts)) numbers += std::to_string(static_cast<int>(c)) + " ";
@@ -84,7 +84,7 @@ TEST(Vtp, PolygonsAndTheirLabels) {
   EXPECT_EQ(mesh.points.size(), 5u);
   EXPECT_EQ(mesh.points[2], Vec3(1, 1, 0));
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}, {0, 1, 4}}));
-  // The first label is that of the line.
+  // The first label belongs to the line.
   EXPECT_EQ(mesh.groups, (std::vector<SurfaceRegion>{{2, ""}, {5, ""}}));
   EXPECT_EQ(mesh.triangle_groups, (std::vector<std::uint32_t>{0, 0, 1}));
   EXPECT_EQ(dropped, (std::vector<Dropped>{{"lines", 1}}));
@@ -100,7 +100,7 @@ TEST(Vtp, OtherFieldsAreNamed) {
 }
 
 TEST(Vtp, TextsOfCellsNameTheirGroups) {
-  // The first is that of the line.
+  // The first label belongs to the line.
   const std::vector<std::string> names{"a line", "liver & gall",
                                        "h\xc3\xbc"
                                        "fte"};
@@ -119,7 +119,7 @@ TEST(Vtp, AnEmptyTextIsNoGroup) {
   const TriangleMesh mesh = read_vtp(file(ascii_texts({"", "", "bone"})), "f");
   EXPECT_EQ(mesh.groups, (std::vector<SurfaceRegion>{{}, {0, "bone"}}));
   EXPECT_EQ(mesh.triangle_groups, (std::vector<std::uint32_t>{0, 0, 1}));
-  // As one label for all: it tells nothing apart.
+  // With the same label for all cells there are no groups.
   EXPECT_TRUE(read_vtp(file(ascii_texts({"", "bone", "bone"})), "f").groups.empty());
 }
 
@@ -153,7 +153,7 @@ TEST(Vtp, TextsThatDoNotFit) {
   expect_input_error(read_vtp, file(text_array("ascii", "97 0 300 0")),
                      "number of a character, found \"300\"");
   expect_input_error(read_vtp, file(text_array("ascii", "liver bone")), "found \"liver\"");
-  // Two texts for each cell are no label.
+  // Two texts for each cell are not a label.
   std::string two = ascii_texts({"a", "b"});
   two.replace(two.find("Name="), 0, "NumberOfComponents=\"2\" ");
   EXPECT_TRUE(read_vtp(file(two), "f").groups.empty());
@@ -189,7 +189,7 @@ TEST(Vtp, ArraysOfPointsAreFields) {
   const auto read_all = [](std::string_view bytes, const char* name) { read_vtp_with_fields(bytes, name); };
   const std::string few = with("<DataArray type=\"Int8\" Name=\"c\" format=\"ascii\">1 2</DataArray>");
   expect_input_error(read_all, few, "\"c\"", "5 were expected");
-  // A caller that requests no fields can read the file all the same.
+  // A caller that requests no fields can read the file nevertheless.
   std::vector<Dropped> dropped;
   EXPECT_EQ(read_vtp(few, "f", &dropped).points.size(), 5u);
   EXPECT_EQ(dropped, (std::vector<Dropped>{{"lines", 1}, {"fields of points (\"c\")", 1}}));

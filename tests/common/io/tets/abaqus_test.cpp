@@ -36,7 +36,7 @@ TEST(Abaqus, WhatIsWrittenIsReadWithItsNames) {
 }
 
 TEST(Abaqus, SidesAreThoseOfTheProgram) {
-  // By its manual, face 1 has the nodes 1-2-3, face 2 1-4-2, face 3 2-4-3, face 4 3-4-1.
+  // According to its manual, face 1 has the nodes 1-2-3, face 2 1-4-2, face 3 2-4-3, face 4 3-4-1.
   TetMesh mesh = one_tet();
   mesh.interfaces = find_interfaces(mesh);
   const std::vector<std::array<Index, 3>> faces{{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
@@ -78,7 +78,7 @@ TEST(Abaqus, TenNodesAreReadByTheirCorners) {
 }
 
 TEST(Abaqus, FilesOfOtherPrograms) {
-  // Sections define the materials, sets contain sets and ranges, elements continue over several lines.
+  // Sections define the materials; sets contain sets and ranges; elements continue over several lines.
   const ReadTetMesh r =
       read_abaqus("*Heading\n a job\n** a comment\n*Part, name=P\n" + nodes +
                       "11, 0, 0, -1\n*Element, type=C3D4T\n5, 1, 2,\n3, 10\n6, 1, 3, 2, 11\n*Element, "

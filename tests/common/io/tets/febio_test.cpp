@@ -35,7 +35,7 @@ TEST(Febio, TenNodes) {
   const TetMesh mesh = mesh_with_surfaces();
   const MidsideNodes midside = straight_midside_nodes(mesh);
   const std::string text = text_of(write_febio, {mesh, &midside});
-  // Edges 01 02 03 04 12 13 14 23 24 of the points have the nodes 6 to 14.
+  // The edges 01 02 03 04 12 13 14 23 24 of the points have the nodes 6 to 14.
   EXPECT_NE(text.find("<elem id=\"1\">1,2,3,4,6,10,7,8,11,13</elem>"), std::string::npos) << text;
   EXPECT_NE(text.find("type=\"tet10\""), std::string::npos);
   EXPECT_NE(text.find("<tri6 id=\"1\">1,2,3,6,10,7</tri6>"), std::string::npos) << text;

@@ -21,8 +21,8 @@ TEST(MeditBinary, RoundTripKeepsEveryBit) {
 TEST(MeditBinary, TrianglesAreGroupsOfFaces) {
   const TetMesh mesh = mesh_with_surfaces();
   const ReadTetMesh back = read_medit_binary(text_of(write_medit_binary, mesh), "f");
-  // Without names and comments only numbers remain: the region's number makes all of them regions of the
-  // input.
+  // Without names and comments only numbers remain: because of the region's number all groups become regions
+  // of the input.
   std::vector<std::int64_t> numbers;
   for (const auto& [patch, group] : back.mesh.patch_groups) numbers.push_back(group.number);
   EXPECT_TRUE(std::find(numbers.begin(), numbers.end(), 5) != numbers.end());
@@ -30,7 +30,7 @@ TEST(MeditBinary, TrianglesAreGroupsOfFaces) {
             text_of(write_medit_binary, back.mesh));
 }
 
-/// Builds a file of version `v`, in either byte order.
+/// Builds a file of version `version` in either byte order.
 struct File {
   int version;
   bool swap;
@@ -55,7 +55,7 @@ struct File {
     else
       put(static_cast<float>(value));
   }
-  /// Adds a section with the content that `fill` writes.
+  /// Adds a section whose content is written by `fill`.
   template <class Fill>
   void section(std::int32_t keyword, const Fill& fill) {
     File content{version, swap, {}};

@@ -60,7 +60,7 @@ TEST(Medit, OtherVolumeCellsAreRefusedByKindAndNumber) {
                      "line 13: 2 hexahedra and 1 pyramids", "convert them to tets");
   expect_input_error(read_medit, head + vertices + tets + "Prisms\n3\nEnd\n", "line 13: 3 prisms");
   expect_input_error(read_medit, head + vertices + "TetrahedraP2\n3\nEnd\n", "3 quadratic tets", "-order 1");
-  // An empty section does not reject the file.
+  // A file with an empty section is not rejected.
   EXPECT_EQ(read_medit(head + vertices + tets + "Hexahedra\n0\nEnd\n", "f").dropped,
             (std::vector<Dropped>{{"points with a reference other than 0", 1}}));
 }
@@ -83,7 +83,7 @@ TEST(Medit, InterfaceTrianglesAreFoundAgain) {
             std::string::npos)
       << again;
   EXPECT_EQ(write_medit(read_medit(again, "f").mesh), again);
-  // Without comments the others may be regions of the input, too.
+  // Without comments the others may also be regions of the input.
   const auto without_comments = [](std::string from) {
     for (std::size_t at; (at = from.find("# ref")) != std::string::npos;)
       from.erase(at, from.find('\n', at) + 1 - at);
@@ -91,7 +91,7 @@ TEST(Medit, InterfaceTrianglesAreFoundAgain) {
   };
   EXPECT_EQ(read_medit(without_comments(other), "f").mesh.patch_groups.size(), 3u);
   EXPECT_EQ(dropped(without_comments(text)), dropped(text));
-  // A comment with other content, and a group that leaves faces out.
+  // A comment with different content, and a group that leaves faces out.
   std::string named = text;
   named.replace(named.find("# reference 2: -7|1"), 19, "# reference 2: \"in\"");
   EXPECT_EQ(read_medit(named, "f").mesh.patch_groups.size(), 1u);
@@ -142,7 +142,7 @@ TEST(Medit, QuadsOfSurfacesAreCut) {
   EXPECT_EQ(mesh.triangle_groups, (std::vector<std::uint32_t>{0, 0, 1}));
   expect_input_error(read_medit_surface, head + vertices + "Quadrilaterals\n1\n1 2 3 5 7\n", "line 12",
                      "point 5 of 4");
-  // Beside tets they are no faces.
+  // In a file with tets they are not faces.
   EXPECT_EQ(read_medit(head + vertices + "Tetrahedra\n1\n1 2 3 4 1\nQuadrilaterals\n1\n1 2 3 4 7\n", "f")
                 .dropped[0],
             (Dropped{"quads", 1}));

@@ -18,7 +18,7 @@ TEST(Msh4Writer, RoundTripKeepsEveryBitAndTheOrder) {
     const ReadTetMesh back = read_msh(text_of(write, mesh), "f");
     EXPECT_TRUE(same_bits(back.mesh.points, mesh.points));
     EXPECT_EQ(back.mesh.tets, mesh.tets);
-    EXPECT_EQ(back.mesh.materials, mesh.materials);  // also those that cannot be numbers of groups
+    EXPECT_EQ(back.mesh.materials, mesh.materials);  // including those that cannot be group numbers
     EXPECT_EQ(back.mesh.material_names, mesh.material_names);
     EXPECT_EQ(back.material_field, "gmsh:physical");
     EXPECT_EQ(text_of(write, back.mesh), text_of(write, mesh));
@@ -44,7 +44,8 @@ TEST(Msh4Writer, SurfacesAndFields) {
 
 TEST(Msh4Writer, EntitiesAreBoundedByTheirSurfaces) {
   const std::string text = text_of(write_msh41, mesh_with_surfaces());
-  // Two volumes: -7 is the group 2. The surface between them points out of it and into the other.
+  // Two volumes; material -7 is group 2. The normals of the surface between them point out of it and into the
+  // other one.
   EXPECT_NE(text.find("$Comments\ntetwright material: 2 -7\n$EndComments\n"), std::string::npos) << text;
   EXPECT_NE(text.find("$Entities\n0 0 4 2\n"), std::string::npos) << text;
   EXPECT_NE(text.find(" 1 1 3 -2 3 5\n"), std::string::npos) << text;
@@ -71,7 +72,7 @@ TEST(Msh4Writer, CutBinaryFilesAreErrors) {
   mesh.point_fields = {{"t", 1, false, {1, 2, 3, 4, 5}}};
   const std::string whole = text_of(write_msh41_binary, mesh);
   for (std::size_t n = 0; n + 1 < whole.size(); ++n) {
-    // All that follows $Elements may be missing as a whole.
+    // The section that starts with $Elements may be missing entirely.
     if (whole.compare(0, n, whole, 0, n) == 0 && n == whole.find("$EndElements") + 12) continue;
     if (n == whole.find("$EndElements") + 13) continue;
     (void)error_of<InputError>([&] { (void)read_msh(whole.substr(0, n), "f"); });

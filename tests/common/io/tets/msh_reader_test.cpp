@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Version 4.1 of the format; version 2 is in msh_test.cpp.
+// Tests of version 4.1 of the format; version 2 is in msh_test.cpp.
 #include "common/io/tets/msh.h"
 #include "tests/common/io/expect_error.h"
 
@@ -9,7 +9,7 @@ namespace {
 
 const std::string head = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n";
 const std::string names = "$PhysicalNames\n2\n2 7 \"skin\"\n3 7 \"my bone\"\n$EndPhysicalNames\n";
-// A point, a curve, a surface and two volumes, the first of which has two groups.
+// A point, a curve, a surface and two volumes, the first of which is in two groups.
 const std::string entities =
     "$Entities\n1 1 1 2\n1 0 0 0 0\n1 0 0 0 1 1 1 0 2 1 -1\n1 0 0 0 1 1 1 1 7 1 1\n"
     "3 0 0 0 1 1 1 2 7 8 1 1\n4 0 0 0 1 1 1 0 1 1\n$EndEntities\n";

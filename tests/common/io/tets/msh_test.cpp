@@ -81,7 +81,7 @@ TEST(Msh, GroupsOfFacesComeBackWithTheirNamesAndNumbers) {
   std::string twice = text;
   twice.replace(twice.find("outlet"), 6, "inlet");
   expect_input_error(read_msh, twice, "line 9", "both called \"inlet\"");
-  // The points of the last triangle do not belong to one tet.
+  // The points of the last triangle do not belong to a common tet.
   std::string other = text;
   other.replace(other.find("$EndElements"), 0, "10 2 2 12 12 1 4 5\n");
   other.replace(other.find("$Elements\n9"), 11, "$Elements\n10");
@@ -94,14 +94,14 @@ TEST(Msh, NoTwoGroupsOfFacesHaveOneName) {
   const MaterialPair first{1, std::nullopt}, second{2, std::nullopt};
   for (InterfaceTriangle& t : mesh.interfaces)
     if (t.ids == Triangle{0, 1, 3} || t.ids == Triangle{0, 4, 1}) t.patch = 1;
-  // Names equal to the pair's, to the pair's with a suffix, and to each other when written.
+  // Names that equal the pair's, the pair's with a suffix, and each other once written.
   mesh.patch_groups = {{{first, 1}, {7, "1|outside"}}, {{second, 1}, {8, "1|outside_2"}}};
   const std::string text = write_msh(mesh);
   EXPECT_NE(text.find("2 7 \"1|outside\"\n2 8 \"1|outside_2\"\n"), std::string::npos) << text;
   EXPECT_NE(text.find("\"1|outside_3\"\n"), std::string::npos) << text;
   EXPECT_EQ(write_msh(read_msh(text, "f").mesh), text);
   EXPECT_EQ(read_msh(text, "f").mesh.patch_groups.size(), 2u);
-  // A name that the pair has with a suffix.
+  // A name that equals the pair's with a suffix.
   mesh.patch_groups = {{{first, 1}, {7, "1|outside_2"}}};
   const ReadTetMesh suffix = read_msh(write_msh(mesh), "f");
   EXPECT_EQ(suffix.mesh.patch_groups, mesh.patch_groups);
@@ -110,7 +110,7 @@ TEST(Msh, NoTwoGroupsOfFacesHaveOneName) {
   EXPECT_NE(write_msh(mesh).find("2 7 \"a_b_2\"\n2 8 \"a_b\"\n"), std::string::npos);
   mesh.patch_groups = {{{first, 1}, {7, "same"}}, {{second, 1}, {8, "same"}}};
   EXPECT_NO_THROW(read_msh(write_msh(mesh), "f"));
-  // Materials of equal names make pairs of equal names.
+  // Materials with equal names give pairs with equal names.
   mesh.patch_groups = {};
   mesh.material_names = {{1, "bone"}, {2, "bone"}};
   EXPECT_NO_THROW(read_msh(write_msh(mesh), "f"));
@@ -317,7 +317,7 @@ TEST(Msh, BadData) {
                      head + nodes + elements("1 4 2 5 6 1 2 3 4\n1 4 2 5 6 1 2 3 4\n", "2") +
                          "$ElementData\n1\n\"e\"\n1\n0\n3\n0\n1\n1\n1 4\n$EndElementData\n",
                      "element 1", "twice");
-  // Many short sections must not take unlimited memory.
+  // Many short sections must not use unlimited memory.
   std::string many = head + "$Nodes\n100\n";
   for (int i = 1; i <= 100; ++i) many += std::to_string(i) + " 0 0 0\n";
   many += "$EndNodes\n" + elements("1 4 0 1 2 3 4\n");

@@ -42,7 +42,7 @@ class File {
   std::string text_;
 };
 
-/// A triangle and a tet.
+/// A file with a triangle and a tet.
 File small(bool binary, const char* version = "3.0") {
   File f(binary, version);
   f.line("POINTS 4 float").numbers<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1});
@@ -91,7 +91,7 @@ TEST(Vtk, EveryKindOfData) {
     f.line("METADATA").line("COMPONENT_NAMES").line("X").line("");
     f.line("wide 1 2 vtktypeint64").numbers<std::int64_t>({1, 1LL << 40});
     f.line("text 1 2 string");
-    // In binary files the length precedes the text, in one byte or four.
+    // In binary files the length precedes the text, in one or four bytes.
     f.line(binary ? "\xc3"
                     "abc" +
                         std::string("\x40\0\0\1z", 5)
@@ -216,7 +216,7 @@ TEST(Vtk, CutShort) {
     }
 }
 
-/// A tetrahedron with a strip as its last faces, beside a quad, a line and a vertex.
+/// A tetrahedron whose last faces are a strip, together with a quad, a line and a vertex.
 std::string surface_file(bool binary, bool offsets) {
   File f(binary, offsets ? "5.1" : "3.0", "POLYDATA");
   f.line("POINTS 5 float").numbers<float>({0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 2, 2, 2});
@@ -255,14 +255,14 @@ TEST(VtkSurface, PolygonsStripsAndGroups) {
       std::vector<Dropped> dropped;
       const TriangleMesh s = read_vtk_surface(surface_file(binary, offsets), "f", &dropped);
       EXPECT_EQ(s.points.size(), 5u);
-      // The quad becomes two triangles, the strip two of consistent orientation.
+      // The quad becomes two triangles, the strip two consistently oriented ones.
       EXPECT_EQ(s.triangles,
                 (std::vector<Triangle>{{0, 2, 1}, {0, 1, 3}, {1, 2, 4}, {1, 4, 3}, {0, 3, 2}, {2, 3, 1}}));
       ASSERT_EQ(s.triangle_groups.size(), 6u);
       std::vector<std::int64_t> numbers;
       for (const auto g : s.triangle_groups) numbers.push_back(s.groups[g].number);
       EXPECT_EQ(numbers, (std::vector<std::int64_t>{4, 4, 5, 5, 6, 6}));
-      EXPECT_EQ(dropped.size(), 3u);  // vertices, lines, the field of points
+      EXPECT_EQ(dropped.size(), 3u);  // vertices, lines, the point field
       const auto fields = read_vtk_surface_with_fields(surface_file(binary, offsets), "f");
       ASSERT_TRUE(fields);
       ASSERT_EQ(fields->point_fields.size(), 1u);
@@ -279,7 +279,7 @@ TEST(VtkSurface, FlatCellsOfAGrid) {
                                .line("CELL_TYPES 3")
                                .numbers<std::int32_t>({8, 5, 9})
                                .text();
-  // A pixel's points go row by row.
+  // The points of a pixel are in row order.
   EXPECT_EQ(read_vtk_surface(grid, "f", nullptr).triangles,
             (std::vector<Triangle>{{0, 1, 3}, {0, 3, 2}, {0, 1, 4}, {0, 1, 3}, {0, 3, 2}}));
 }
@@ -300,7 +300,7 @@ TEST(VtkSurface, OfSomethingElse) {
   const std::string good = surface_file(false, false);
   expect_input_error(surface, replaced(good, "3 0 2 1", "3 0 2 7"), "point 7 of 5");
   for (std::size_t n = 0; n + 40 < good.size(); n += 3) try {
-      EXPECT_FALSE(surface(good.substr(0, n), "f").triangles.empty());  // a whole section may be missing
+      EXPECT_FALSE(surface(good.substr(0, n), "f").triangles.empty());  // an entire section may be missing
     } catch (const InputError&) {
     }
 }

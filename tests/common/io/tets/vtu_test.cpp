@@ -17,9 +17,9 @@
 namespace tetwright::vtu_test {
 namespace {
 
-// Builds a file of a triangle and a tet in every encoding of VTK.
+// Builds a file with a triangle and a tet in any encoding of VTK.
 struct Encoding {
-  std::string format = "binary";  ///< ascii, binary, base64 or raw (the last two appended)
+  std::string format = "binary";  ///< ascii, binary, base64 or raw (the last two are appended)
   std::string compressor = {};    ///< "ZLib", "LZ4", "LZMA"; empty: none
   bool wide = false;
   bool big = false;
@@ -235,7 +235,7 @@ TEST(Vtu, WhatIsDroppedIsNamed) {
             (std::vector<Dropped>{{"triangles", 1},
                                   {"arrays of the whole dataset (\"TimeValue\")", 1},
                                   {"arrays of text (\"notes\")", 1}}));
-  // The array of the names of materials is read.
+  // The array with the names of materials is read.
   EXPECT_TRUE(read_vtu(write_vtu(tricky_tets()), "f").dropped.empty());
 }
 
@@ -249,7 +249,7 @@ TEST(Vtu, WhichFieldIsTheMaterial) {
   EXPECT_EQ(read({field("one", 5), field("two", 6)}).material_field, "");
   EXPECT_EQ(read({field("one", 5), field("two", 6)}).mesh.materials[0], 1);
   EXPECT_EQ(read({}).mesh.materials[0], 1);
-  // Some filters of ParaView turn integers into floats; whole numbers are accepted.
+  // Some filters of ParaView convert integers to floats; whole numbers are accepted.
   EXPECT_EQ(read_vtu(file({}, some_points(false), some_cells(false),
                           {array<double>("Float64", "material", {1, 6}, false)}),
                      "f")
@@ -369,7 +369,7 @@ TEST(Vtu, BinaryCutShortOrDamaged) {
       const std::size_t whole = good.find(end) - (format == std::string("binary") ? 30 : 1);
       for (std::size_t n = 0; n < whole; n += 3)
         (void)error_of<InputError>([&] { (void)read_vtu(good.substr(0, n), "f"); });
-      // The largest sizes that a header can promise.
+      // The largest sizes that a header can claim.
       std::string promise = good;
       const std::size_t data =
           format == std::string("binary") ? promise.find("\">\n  ") + 5 : promise.find(" _") + 2;
@@ -378,7 +378,7 @@ TEST(Vtu, BinaryCutShortOrDamaged) {
     }
 }
 
-/// Two tets with a common face, each in a piece with points of its own, and a third piece with only a
+/// Two tets with a common face, each in a separate piece with its own points, and a third piece with only a
 /// triangle.
 std::string two_pieces(const std::string& first_fields, const std::string& second_fields) {
   const auto piece = [](const std::string& points, const std::string& cells, int type,
@@ -407,8 +407,7 @@ std::string fields(const std::string& point_values, const std::string& material,
 
 TEST(Vtu, PiecesAreJoinedWhereTheyMeet) {
   std::string file = two_pieces(fields("1 2 3 4", "5"), fields("7 8 9 10", "6"));
-  // The triangle's piece has points without fields, so that no field of points is in all pieces; it has no
-  // tets.
+  // The triangle's piece has points without fields, so no point field is in all pieces; it has no tets.
   const std::size_t triangle = file.rfind("<Piece");
   const ReadTetMesh all = read_vtu(file, "f");
   EXPECT_TRUE(all.mesh.point_fields.empty());
@@ -453,7 +452,7 @@ TEST(Vtu, FieldsOfSomePiecesAndGhostCellsAreLeftOutAndSaid) {
   file.erase(triangle, file.find("</UnstructuredGrid>") - triangle);
   const ReadTetMesh r = read_vtu(file, "f");
   EXPECT_EQ(r.mesh.tets, (std::vector<Tet>{{0, 1, 2, 3}}));
-  EXPECT_TRUE(r.mesh.cell_fields.empty());  // the marks are no field
+  EXPECT_TRUE(r.mesh.cell_fields.empty());  // the marks are not a field
   EXPECT_TRUE(std::any_of(r.dropped.begin(), r.dropped.end(),
                           [](const Dropped& d) { return d.what.find("vtkGhostType") != std::string::npos; }));
 }

@@ -12,7 +12,7 @@
 namespace tetwright::fixed_width_number_test {
 namespace {
 
-/// Value as Nastran reads it, too.
+/// Value of the text, also in Nastran's notation.
 double value_of(std::string text) {
   const std::size_t sign = text.find_first_of("+-", 1);
   if (text.find('e') == std::string::npos && sign != std::string::npos) text.insert(sign, "e");
@@ -51,7 +51,7 @@ TEST(FixedWidthNumber, OthersAreRoundedToWhatFits) {
       ASSERT_LE(narrow.size(), 16u) << narrow;
       ASSERT_LE(wide.size(), 20u) << wide;
       ASSERT_NE(wide.find('.'), std::string::npos) << wide;
-      // Three digits of an exponent leave less room.
+      // A three-digit exponent leaves less room.
       if (std::fabs(value) < 1e-99 || std::fabs(value) > 1e99) continue;
       // The worst case has a sign, a point, and an exponent of four characters ("e-12").
       ASSERT_LE(std::fabs(value_of(wide) / value - 1), bare ? 5e-14 : 5e-13) << wide;

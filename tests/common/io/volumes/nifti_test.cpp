@@ -9,7 +9,7 @@
 namespace tetwright::nifti_test {
 namespace {
 
-/// The header of a volume of 2 x 3 x 4 voxels, for the tests to change.
+/// Header of a volume of 2 x 3 x 4 voxels, which tests can modify.
 class Header {
  public:
   explicit Header(int type, int bits, bool big = false) : bytes_(352, '\0'), big_(big) {
@@ -37,7 +37,7 @@ class Header {
 Header plain() { return Header(2, 8); }
 const std::string body = counted_voxels<std::uint8_t>();
 
-/// Reads a volume in one file.
+/// Reads a volume in a single file.
 LabelVolume read_alone(std::string_view bytes, const std::string& name) {
   return read_nifti(bytes, name, [](const std::string& path) -> std::string {
     throw InputError(path + ": there is no such file");
@@ -85,7 +85,7 @@ TEST(Nifti, VersionTwo) {
       const LabelVolume v = read_alone(file, "f");
       EXPECT_EQ(v.size, (std::array<int, 3>{2, 3, 4}));
       EXPECT_EQ(v.labels, counted_labels());
-      EXPECT_EQ(v.origin, Vec3(1.0 / 3, 1.0 / 3 + 1, 1.0 / 3 + 2));  // in doubles
+      EXPECT_EQ(v.origin, Vec3(1.0 / 3, 1.0 / 3 + 1, 1.0 / 3 + 2));  // in double precision
       EXPECT_EQ(v.directions(2, 2), 0.1 * 3);
     }
     set(168, std::int64_t{540});

@@ -198,7 +198,7 @@ TEST(Nrrd, BadBodies) {
   std::string checksum = packed;
   checksum[checksum.size() - 6] ^= 1;
   expect_refused(gzip + checksum, "damaged");
-  // No memory is allocated for voxels that the file can't hold.
+  // No memory is allocated for voxels that the file cannot contain.
   expect_refused(replaced(gzip, "2 3 4", "1024 1024 1024") + packed, "need 1073741824 bytes", "at most");
   const std::string floats = replaced(head, "uint8", "float") + "endian: little\n\n";
   std::vector<float> numbers(24, 1);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-// A header of the consumer's whose path is also that of one within Tetwright.
+// A header of the consumer whose path equals that of a header of Tetwright.
 namespace consumer {
 struct Error {
   int status = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The page of --report: what is in it, how large it is and when it is written. tests/report_page/ looks at it
-// in a browser.
+// Tests the page of --report: its contents, its size and when it is written. tests/report_page/ tests it in a
+// browser.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -33,7 +33,7 @@ TetMesh sample_mesh(const char* name) {
   return mesh;
 }
 
-/// The page of a mesh that was only read.
+/// Page of a mesh that was only read.
 std::string page_of(const TetMesh& mesh, const PageLimits& limits = {}) {
   CommandLine line;
   line.command = Command::check;
@@ -173,7 +173,7 @@ TEST(ReportPage, HoldsAllTetsWithTheirMaterialsAndAngles) {
 }
 
 TEST(ReportPage, OfAHundredThousandTetsIsBelowFiveMegabytes) {
-  // A dense mesh is the densest in points, random ones in tets for each point.
+  // A dense mesh has the most points; random meshes have the most tets for each point.
   const TemporaryFolder f;
   ASSERT_EQ(run("sample sphere -o " + (f / "s.ply")).status, 0);
   ASSERT_LE(run("mesh " + (f / "s.ply") + " -o " + (f / "s.vtu") + " --resolution 56 --report " +
@@ -184,7 +184,7 @@ TEST(ReportPage, OfAHundredThousandTetsIsBelowFiveMegabytes) {
   const double bytes = static_cast<double>(contents(f / "s.html").size());
   EXPECT_GT(tets, 60'000u);
   EXPECT_LT(bytes * std::max(1.0, 100'000.0 / static_cast<double>(tets)), 5e6);
-  // 200,000 tets: more than two pages of 100,000, but for the script.
+  // 200,000 tets: below twice the limit for 100,000, since the page has the script only once.
   EXPECT_LT(page_of(sample_mesh("random-interior-large")).size(), 8'000'000u);
 }
 
@@ -198,12 +198,12 @@ TEST(ReportPage, OfALargerMeshIsBounded) {
   EXPECT_LT(page.tet_count, mesh.tets.size());
   EXPECT_EQ(page.layer.size(), page.tet_count);
   EXPECT_GT(page.tet_count, 100u);
-  // All that lies open once the plane x = middle is cut along is there.
+  // Everything that is exposed by a cut along the plane x = middle is on the page.
   EXPECT_TRUE(page.layers[0]);
   const std::string text = page_of(mesh, limits);
   EXPECT_NE(text.find("too many for a page"), std::string::npos);
   EXPECT_EQ(page_of(mesh).find("too many for a page"), std::string::npos);
-  // A layer that is too large is left out, and that is said.
+  // A layer that is too large is left out, and the page reports it.
   const PageLimits no_layers{1000, 2000, 10};
   EXPECT_EQ(page_mesh(mesh, nullptr, no_layers).tet_count, 0u);
   EXPECT_NE(page_of(mesh, no_layers).find("too many along x, y, z"), std::string::npos);
@@ -291,7 +291,7 @@ TEST(ReportPage, ThatCannotBeWrittenLeavesNothing) {
   const std::size_t files = f.entries();
   expect_refused(mesh + " --report " + (f / "nowhere/p.html"), 5, {"nowhere"});
   EXPECT_EQ(f.entries(), files);
-  // A limit on the size of files that the mesh fits in and the page does not.
+  // A file size limit that the mesh does not reach and the page exceeds.
   expect_refused(mesh + " --quiet --report " + (f / "p.html"), 5, {"p.html"}, "ulimit -f 400;");
   EXPECT_EQ(f.entries(), files);
 }
