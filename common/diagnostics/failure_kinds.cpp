@@ -9,7 +9,7 @@ namespace {
 
 using enum DiagnosticCode;
 
-constexpr std::array kinds = std::to_array<DiagnosticKind>({
+constexpr std::array failure_table = std::to_array<DiagnosticKind>({
     {.code = materials_missing,
      .name = "materials-missing",
      .severity = Severity::error,
@@ -149,6 +149,6 @@ constexpr std::array kinds = std::to_array<DiagnosticKind>({
 
 }  // namespace
 
-std::span<const DiagnosticKind> failure_kinds() { return kinds; }
+std::span<const DiagnosticKind> failure_kinds() { return failure_table; }
 
 }  // namespace tetwright

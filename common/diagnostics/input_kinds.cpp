@@ -9,7 +9,7 @@ namespace {
 
 using enum DiagnosticCode;
 
-constexpr std::array kinds = std::to_array<DiagnosticKind>({
+constexpr std::array input_table = std::to_array<DiagnosticKind>({
     {.code = points_merged,
      .name = "points-merged",
      .severity = Severity::note,
@@ -207,6 +207,6 @@ constexpr std::array kinds = std::to_array<DiagnosticKind>({
 
 }  // namespace
 
-std::span<const DiagnosticKind> input_kinds() { return kinds; }
+std::span<const DiagnosticKind> input_kinds() { return input_table; }
 
 }  // namespace tetwright

@@ -9,7 +9,7 @@ namespace {
 
 using enum DiagnosticCode;
 
-constexpr std::array kinds = std::to_array<DiagnosticKind>({
+constexpr std::array request_table = std::to_array<DiagnosticKind>({
     {.code = target_missed,
      .name = "target-missed",
      .severity = Severity::shortfall,
@@ -240,6 +240,6 @@ constexpr std::array kinds = std::to_array<DiagnosticKind>({
 
 }  // namespace
 
-std::span<const DiagnosticKind> request_kinds() { return kinds; }
+std::span<const DiagnosticKind> request_kinds() { return request_table; }
 
 }  // namespace tetwright
