@@ -16,6 +16,10 @@ TEST(Diagnostic, CodesAreDistinctWordsWithHyphens) {
     EXPECT_TRUE(std::regex_match(kind.name, std::regex("[a-z]+(-[a-z]+)*"))) << kind.name;
     EXPECT_TRUE(names.insert(kind.name).second) << kind.name;
     EXPECT_STRNE(kind.title, "");
+    EXPECT_STRNE(kind.cause, "") << kind.name;
+    EXPECT_STRNE(kind.remedy, "") << kind.name;
+    // Errors that end a run have many messages for one code.
+    EXPECT_EQ(std::string(kind.message).empty(), kind.code >= DiagnosticCode::usage) << kind.name;
     EXPECT_EQ(&kind_of(kind.code), &kind);
   }
 }

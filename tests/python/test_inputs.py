@@ -38,6 +38,17 @@ def test_one_file_cannot_be_two(tmp_path, cube_mesh):
     assert (tmp_path / "a.vtu").exists() and (tmp_path / "a.ply").exists()
 
 
+def test_every_code_has_cause_and_remedy():
+    kinds = tetwright.diagnostic_kinds()
+    assert len(kinds) > 70
+    assert all(kind.title and kind.cause and kind.remedy for kind in kinds.values())
+    assert {kind.severity for kind in kinds.values()} == {"note", "shortfall", "warning", "error"}
+    # accept_changes concerns shortfalls alone, and a note that is not certain is no warning
+    assert {kind.severity for kind in kinds.values() if kind.acceptable} == {"shortfall"}
+    assert [name for name, kind in kinds.items() if not kind.certain] == ["solid-uncertain", "thin-parts-uncertain"]
+    assert kinds["solid-changed"].acceptable and not kinds["target-missed"].acceptable
+
+
 def test_diagnostics_have_codes_and_severities(cube_mesh):
     assert cube_mesh.diagnostics == []
     with pytest.warns(tetwright.ShortfallWarning):
