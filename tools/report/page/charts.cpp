@@ -259,8 +259,12 @@ std::string iterations_chart(std::span<const IterationReport> iterations) {
     chosen += "M" + length(x) + " " + length(y_of(not_chosen * static_cast<double>(shown[i]->tets_before))) +
               "H" + length(x + width);
   }
-  std::string out = "<figure>" + plot.begin("Tets at the beginning of each iteration, the worst at the top");
-  out += y_axis(plot, {{0, "0"}, {0.5, grouped_number(most / 2)}, {1, grouped_number(most)}}, "tets");
+  std::string out = "<div class=\"charts\"><figure>" +
+                    plot.begin("Tets at the beginning of each iteration, the worst at the top");
+  constexpr std::size_t longest_label = 10'000;  // that the margin has room for
+  const std::size_t unit = most < longest_label ? 1 : 1000;
+  out += y_axis(plot, {{0, "0"}, {0.5, grouped_number(most / 2 / unit)}, {1, grouped_number(most / unit)}},
+                unit == 1 ? "tets" : "thousands of tets");
   const auto tick = [&](std::size_t i) {
     return Tick{(static_cast<double>(i) - 0.5) / count, std::to_string(i)};
   };
@@ -276,7 +280,7 @@ std::string iterations_chart(std::span<const IterationReport> iterations) {
   for (std::size_t b = 0; b < bins; ++b) out += "<span class=\"swatch " + shade(b) + "\"></span>";
   return out +
          " to the best; <span class=\"swatch outline\"></span> those above it are worked "
-         "on</figcaption></figure>";
+         "on</figcaption></figure></div>";
 }
 
 }  // namespace tetwright
