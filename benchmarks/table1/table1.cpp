@@ -26,11 +26,11 @@ struct Options {
 
 std::string short_count(std::size_t n) { return std::to_string((n + 500) / 1000) + "K"; }
 
-std::string name_of(const PaperRow& row) { return row.model + (":" + short_count(row.target_tets)); }
+std::string row_name(const PaperRow& row) { return row.model + (":" + short_count(row.target_tets)); }
 
 bool is_wanted(const PaperRow& row, const std::vector<std::string>& wanted) {
   return wanted.empty() || std::any_of(wanted.begin(), wanted.end(), [&](const std::string& w) {
-           return w == row.model || w == name_of(row);
+           return w == row.model || w == row_name(row);
          });
 }
 
@@ -73,7 +73,7 @@ void print_row(const PaperRow& p, const std::string& schedule, const nlohmann::j
   const bool sound = r["findings"].empty() && r["topology_differences"].empty();
   std::printf(
       "%-14s %-6s %7zu %7zu %9s %7s %8.2f %6.0fx %15s %15s %11s %11s %13s %13s %7.4f %6.0f %7s %7s %s\n",
-      name_of(p).c_str(), schedule.c_str(), r["tets_before"].get<std::size_t>(),
+      row_name(p).c_str(), schedule.c_str(), r["tets_before"].get<std::size_t>(),
       r["tets_after"].get<std::size_t>(), iterations, minutes(p.seconds).c_str(), seconds,
       p.seconds / seconds, paper_below, below, angle, dihedrals, to, from, r["volume_ratio"].get<double>(),
       r["peak_bytes"].get<double>() / 1e6,
@@ -122,8 +122,8 @@ int run(const Options& o) {
     if (!is_wanted(p, o.rows)) continue;
     const std::string scan = o.data + "/" + p.scan;
     if (!std::filesystem::exists(scan)) {
-      std::printf("%-14s skipped: there is no %s\n", name_of(p).c_str(), scan.c_str());
-      all["rows"].push_back({{"row", name_of(p)}, {"skipped", "no " + scan}});
+      std::printf("%-14s skipped: there is no %s\n", row_name(p).c_str(), scan.c_str());
+      all["rows"].push_back({{"row", row_name(p)}, {"skipped", "no " + scan}});
       continue;
     }
     const std::string dense =
@@ -135,12 +135,12 @@ int run(const Options& o) {
       if (!made.contains("error")) row = measure(p, schedule, dense, scan, o);
       if (row.contains("error")) {
         failed = true;
-        std::printf("%-14s %-6s failed: %s\n", name_of(p).c_str(), schedule.c_str(),
+        std::printf("%-14s %-6s failed: %s\n", row_name(p).c_str(), schedule.c_str(),
                     row["error"].get<std::string>().c_str());
       } else {
         print_row(p, schedule, row);
       }
-      row["row"] = name_of(p);
+      row["row"] = row_name(p);
       row["schedule"] = schedule;
       row["dense"] = made;
       row["paper"] = {{"tets_before", p.initial_tets},
@@ -169,7 +169,7 @@ int main(int argc, char** argv) {
   CLI::App app("Table 1 of Cutler, Dorsey & McMillan 2004 beside ours, row by row.", "table1");
   app.add_option("--data", o.data, "Folder of the scans (default: TETWRIGHT_DATA, else ../shared/data)");
   std::string names;
-  for (const auto& p : tetwright::paper_table) names += " " + tetwright::name_of(p);
+  for (const auto& p : tetwright::paper_table) names += " " + tetwright::row_name(p);
   app.add_option("--rows", o.rows, "Models or rows, separated by commas; of" + names)
       ->delimiter(',')
       ->check([&](const std::string& text) {

@@ -192,7 +192,7 @@ $ElementData
 $EndElementData
 """
 
-# What formats are for, which no program says of itself.
+# The programs that read each format.
 USES = {
     "vtu": "ParaView, PyVista, VTK", "msh22": "Gmsh, most readers of `.msh`", "msh41": "Gmsh 4", "msh41-binary": "Gmsh 4, large meshes",
     "medit": "mmg, Medit, FreeFEM", "medit-binary": "the same, large meshes", "vtk": "SOFA, deal.II, ParaView", "abaqus": "Abaqus, CalculiX",

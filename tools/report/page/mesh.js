@@ -135,7 +135,7 @@ class VisibleMesh {
     for (let t = 0; t < shown.length; ++t) {
       let is_shown = state.on[tags[t]];
       if (cutting) is_shown &&= state.flip ? sums[t] > limit : sums[t] <= limit;
-      // Of a layer only what its own cut lays open.
+      // In a mesh shown in part, a tet appears only in its own cut.
       if (!about.whole) is_shown &&= cutting && (layer[t] >> state.axis & 1) === 1;
       shown[t] = is_shown ? 1 : 0;
     }

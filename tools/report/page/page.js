@@ -32,7 +32,7 @@ function short(value, size = value) {
   return decimals <= 20 && decimals >= 0 ? String(Number(value.toFixed(decimals))) : String(Number(value.toPrecision(3)));
 }
 
-// What the numbers of `distance` stand for.
+// Values of `distance` with a meaning of their own.
 const FARTHEST = 65534, NOT_MEASURED = 65535;
 
 /**
@@ -58,7 +58,7 @@ class Page {
     this.view = view;
     this.visible = new VisibleMesh(mesh);
     const materials = mesh.about.materials;
-    // Those of the segmentation, if it has any.
+    // Colours of the segmentation, if it has any.
     this.colours = materials.map((m, i) => m.colour ? m.colour.map(part => Math.round(255 * part)) :
       rgb_of(m.tag === OUTSIDE_TAG && m.name === "outside" ? OUTSIDE_COLOUR : MATERIAL_COLOURS[i % MATERIAL_COLOURS.length]));
     this.state = {
