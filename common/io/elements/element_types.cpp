@@ -12,8 +12,8 @@ constexpr std::int64_t none = ElementType::unnumbered;
 
 constexpr std::array types = std::to_array<ElementType>({
     {"empty cells", 0, 0, 0, none},
-    {"vertex cells", 0, 1, 1, 15},
-    {"vertex cells", 0, 0, 2, none},
+    {"point elements", 0, 1, 1, 15},
+    {"point elements", 0, 0, 2, none},
     {"lines", 1, 2, 3, 1},
     {"polylines", 1, 0, 4, none},
     {"quadratic lines", 1, 3, 21, 8},

@@ -64,7 +64,7 @@ TEST(ElementTypes, AFormatsOwnNumbersAreThoseOfItsManual) {
                                                        {6, "prisms", 3, 6},
                                                        {7, "pyramids", 3, 5},
                                                        {10, "quadratic quads", 2, 9},
-                                                       {15, "vertex cells", 0, 1},
+                                                       {15, "point elements", 0, 1},
                                                        {31, "tets of higher order", 3, 56}}) {
     const ElementType* type = msh_element_type(number);
     ASSERT_TRUE(type) << number;

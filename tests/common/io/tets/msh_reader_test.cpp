@@ -39,7 +39,7 @@ TEST(MshReader, Version41) {
   EXPECT_EQ(r.mesh.patch_groups,
             (std::map<InterfacePatch, SurfaceRegion>{{{{7, std::nullopt}, 1}, {7, "skin"}}}));
   EXPECT_EQ(r.dropped,
-            (std::vector<Dropped>{{"points", 1}, {"further physical groups of entities (\"8\")", 1}}));
+            (std::vector<Dropped>{{"point elements", 1}, {"further physical groups of entities (\"8\")", 1}}));
 }
 
 TEST(MshReader, SurfacesWithSeveralAndTurnedGroups) {

@@ -150,7 +150,7 @@ TEST(Msh, SurfacesWithGroups) {
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 1, 3}, {1, 2, 3}}));
   EXPECT_EQ(mesh.groups, (std::vector<SurfaceRegion>{{7, "skin"}, {9, ""}}));
   EXPECT_EQ(mesh.triangle_groups, (std::vector<std::uint32_t>{0, 1, 0}));
-  EXPECT_EQ(dropped, (std::vector<Dropped>{{"points", 1}}));
+  EXPECT_EQ(dropped, (std::vector<Dropped>{{"point elements", 1}}));
   expect_input_error(read_msh_surface, write_msh(two_tets(2)), "2 tets", "tetwright simplify");
   expect_input_error(read_msh_surface, head + nodes + elements("1 15 2 0 1 1\n", "1"), "no triangles");
 }
@@ -182,7 +182,7 @@ TEST(Msh, WhatGmshWrites) {
   EXPECT_EQ(r.mesh.material_names, (std::map<MaterialTag, std::string>{{7, "my bone"}}));
   EXPECT_EQ(r.mesh.patch_groups,
             (std::map<InterfacePatch, SurfaceRegion>{{{{7, std::nullopt}, 1}, {7, "skin"}}}));
-  EXPECT_EQ(r.dropped, (std::vector<Dropped>{{"points", 1},
+  EXPECT_EQ(r.dropped, (std::vector<Dropped>{{"point elements", 1},
                                              {"tets with numbers of partitions", 1},
                                              {"sections (\"$ElementNodeData\")", 1}}));
 }
