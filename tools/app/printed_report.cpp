@@ -134,18 +134,16 @@ void print_report(const CommandLine& line, const PrepareReport& run) {
                   d.hidden_area);
   }
   if (run.edge_lengths && run.edge_lengths->with_target_length > 0)
-    std::printf(
-        "edge lengths: %.1f %% within %.3g times the wanted ones (%s), median %.2f times; %.4g to %.4g\n",
-        100 * run.edge_lengths->within_share(), edge_length_factor,
-        in_quotes(run.sizes.source->field()).c_str(), run.edge_lengths->median, run.edge_lengths->shortest,
-        run.edge_lengths->longest);
+    std::printf("edge lengths: %.1f %% within %.3g times the target (%s), median %.2f times; %.4g to %.4g\n",
+                100 * run.edge_lengths->within_share(), edge_length_factor,
+                in_quotes(run.sizes.source->field()).c_str(), run.edge_lengths->median,
+                run.edge_lengths->shortest, run.edge_lengths->longest);
   else if (run.edge_lengths)
     std::printf("edge lengths: %.4g to %.4g\n", run.edge_lengths->shortest, run.edge_lengths->longest);
   if (run.second_order)
-    std::printf(
-        "second order: of %zu edges on surfaces %zu follow them, %zu part of the way, %zu are straight\n",
-        run.second_order->edges, run.second_order->on_surface, run.second_order->part_way,
-        run.second_order->straight);
+    std::printf("second order: of %zu edges on surfaces %zu follow them, %zu partly, %zu are straight\n",
+                run.second_order->edges, run.second_order->on_surface, run.second_order->part_way,
+                run.second_order->straight);
   if (run.mesher)
     std::printf("resolution %d (cells of %.4g), ", run.mesher->resolution, run.mesher->cell_size);
   std::printf("%.2f s: read %.2f", run.seconds_total, run.seconds_read);

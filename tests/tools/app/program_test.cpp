@@ -331,7 +331,7 @@ TEST(Program, ShortOfTheTargetIsStatusOneAndWritten) {
   const Answer a = run("simplify " + (f / "d.vtu") + " -o " + (f / "s.vtu") + " --target-tets 3 --stats " +
                        (f / "s.json"));
   EXPECT_EQ(a.status, 1) << a.err;
-  EXPECT_NE(a.err.find("held back by"), std::string::npos) << a.err;
+  EXPECT_NE(a.err.find("limited by"), std::string::npos) << a.err;
   EXPECT_EQ(run("check " + (f / "s.vtu") + " --before " + (f / "d.vtu")).status, 0);
   EXPECT_EQ(nlohmann::json::parse(contents(f / "s.json"))["shortfall"][0]["what"], "target_tets");
   // A target above the mesh's number of tets.

@@ -166,20 +166,21 @@ TEST(Glb, BadInput) {
   };
   refused({{"/scene", 3}}, "number 3", "scenes");
   refused({{"/scene", -1}}, "number -1", "scenes");
-  refused({{"/nodes", 7}}, "\"nodes\" is no list");
+  refused({{"/nodes", 7}}, "\"nodes\" is not a list");
   refused({{"/scenes/0/nodes/0", 5}}, "number 5", "nodes");
   refused({{"/nodes/0/mesh", 2}}, "number 2", "meshes");
   refused({{"/nodes/0/mesh", "a"}}, "nodes 0", "\"mesh\"");
   refused({{"/nodes/0/children", {0}}}, "nodes 0", "child");
   refused({{"/nodes/0/children", {1}}, {"/nodes/1", json::object()}, {"/scenes/0/nodes", {0, 1}}}, "nodes 1",
-          "and of the scene");
+          "both a node and the scene");
   refused({{"/nodes/0/scale", {1, 1}}}, "nodes 0", "not 3 numbers");
   refused({{"/nodes/0/translation", {1e300, 1e300, "a"}}}, "nodes 0", "not 3 numbers");
   refused({{"/meshes/0/primitives/0/indices", 9}}, "number 9", "accessors");
   refused({{"/meshes/0/primitives/0/indices", -2}}, "number -2", "accessors");
-  refused({{"/meshes/0/primitives/0/mode", 7}}, "no mode 7");
+  refused({{"/meshes/0/primitives/0/mode", 7}}, "unknown mode 7");
   refused({{"/meshes/0/primitives/0/attributes/POSITION", 0.5}}, "meshes 0", "\"POSITION\"");
-  refused({{"/meshes/0/primitives/0/attributes/POSITION", 1}}, "accessors 1", "another kind");
+  refused({{"/meshes/0/primitives/0/attributes/POSITION", 1}}, "accessors 1",
+          "has a number type that is not valid");
   refused({{"/accessors/0/count", 9}}, "accessors 0", "its buffer view");
   refused({{"/accessors/0/count", 1000000000000}}, "accessors 0", "its buffer view");
   refused({{"/accessors/0/count", -1}}, "accessors 0", "\"count\" is -1");
@@ -188,7 +189,7 @@ TEST(Glb, BadInput) {
   refused({{"/bufferViews/0/byteStride", 4}}, "accessors 0", "its buffer view");
   refused({{"/accessors/1/bufferView", 7}}, "number 7", "bufferViews");
   refused({{"/accessors/1/count", 11}}, "11 corners", "multiple of three");
-  refused({{"/accessors/0/count", 4}}, "names vertex 4", "there are 4");
+  refused({{"/accessors/0/count", 4}}, "refers to vertex 4", "there are 4");
   refused({{"/buffers/0/uri", "a.bin"}}, "another file");
   refused({{"/accessors/0/sparse", json::object()}}, "sparse");
   refused({{"/extensionsRequired", {"KHR_materials_unlit", "EXT_mesh_gpu_instancing"}}}, "gpu_instancing");

@@ -74,7 +74,7 @@ TEST(Abaqus, TenNodesAreReadByTheirCorners) {
   EXPECT_EQ(back.mesh.points.size(), mesh.points.size());
   EXPECT_EQ(back.mesh.tets, (std::vector<Tet>{mesh.tets[1], mesh.tets[0]}));
   ASSERT_FALSE(back.dropped.empty());
-  EXPECT_EQ(back.dropped[0], (Dropped{"midside nodes; tets of ten nodes are taken by their corners", 9}));
+  EXPECT_EQ(back.dropped[0], (Dropped{"midside nodes; tets of ten nodes are reduced to their corners", 9}));
 }
 
 TEST(Abaqus, FilesOfOtherPrograms) {

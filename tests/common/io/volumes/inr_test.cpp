@@ -67,7 +67,7 @@ TEST(Inr, BadInput) {
   expect_refused("#INRIMAGE-4#{\n" + std::string(100000, '\n'), "no end");
   expect_refused(header(bytes8 + "what\n") + body, "line 10", "\"what\"");
   expect_refused(header(bytes8 + "VDIM=1\n") + body, "twice");
-  expect_refused(replaced(header(bytes8), "VDIM=1", "VDIM=3") + body, "line 5", "3 numbers a voxel");
+  expect_refused(replaced(header(bytes8), "VDIM=1", "VDIM=3") + body, "line 5", "3 numbers per voxel");
   expect_refused(replaced(header(bytes8), "ZDIM=4", "ZDIM=0") + body, "axis 2 is 0");
   expect_refused(replaced(header(bytes8), "ZDIM=4", "ZDIM=x") + body, "line 4", "\"x\"");
   expect_refused(replaced(header(bytes8), "ZDIM=4\n", "") + body, "no line \"zdim\"");
