@@ -57,7 +57,7 @@ void report_touching_points(const std::string& file, PrepareReport& report) {
                                   .file = file,
                                   .what = "points where parts touch without a common face",
                                   .count = report.simplify->touching_points,
-                                  .done = "kept as they are with all their tets"});
+                                  .done = "kept unchanged with all their tets"});
 }
 
 std::string rules_behind_count(const PrepareRun& run, double asked, double reached) {

@@ -147,8 +147,7 @@ TEST(Program, WhatAFileHoldsBesideTheMeshIsNamed) {
   ASSERT_EQ(run("sample two_materials -o " + (f / "two.msh")).status, 0);
   ASSERT_EQ(run("improve " + (f / "two.msh") + " -o " + (f / "better.msh") + " --quiet").status, 0);
   EXPECT_EQ(run("check " + (f / "better.msh") + " --json").err, "");
-  EXPECT_NE(run("check " + (f / "better.msh")).err.find("(found again from the materials)"),
-            std::string::npos);
+  EXPECT_NE(run("check " + (f / "better.msh")).err.find("(restored from the materials)"), std::string::npos);
   // Cells of other kinds are rejected, since they would be missing in the body.
   put(f / "hexa.mesh", head + tets + "Hexahedra\n1\n1 2 3 4 1 2 3 4 0\nEnd\n");
   expect_refused("check " + (f / "hexa.mesh"), 3,

@@ -259,7 +259,7 @@ std::string iterations_chart(std::span<const IterationReport> iterations) {
     chosen += "M" + length(x) + " " + length(y_of(not_chosen * static_cast<double>(shown[i]->tets_before))) +
               "H" + length(x + width);
   }
-  std::string out = "<figure>" + plot.begin("Tets at the beginning of each iteration, the worst at the top");
+  std::string out = "<figure>" + plot.begin("Tets before each iteration, the worst at the top");
   out += y_axis(plot, {{0, "0"}, {0.5, grouped_number(most / 2)}, {1, grouped_number(most)}}, "tets");
   const auto tick = [&](std::size_t i) {
     return Tick{(static_cast<double>(i) - 0.5) / count, std::to_string(i)};
@@ -275,8 +275,8 @@ std::string iterations_chart(std::span<const IterationReport> iterations) {
   out += x_axis(plot, ticks, "iteration") + "</svg><figcaption>Tets before each iteration, from the worst ";
   for (std::size_t b = 0; b < bins; ++b) out += "<span class=\"swatch " + shade(b) + "\"></span>";
   return out +
-         " to the best; <span class=\"swatch outline\"></span> those above it are worked "
-         "on</figcaption></figure>";
+         " to the best; <span class=\"swatch outline\"></span> tets above this line are processed"
+         "</figcaption></figure>";
 }
 
 }  // namespace tetwright
