@@ -138,7 +138,7 @@ void add_labels(CLI::App& app, CommandLine& c) {
   app.add_option_function<std::string>(
          "--outside-label",
          [&c](const std::string& text) { c.options.labels.outside = parse_label("--outside-label", text); },
-         "Label of a segmented volume that stands for the outside")
+         "Label of a segmented volume that means the outside")
       ->type_name("LABEL")
       ->default_str("0");
   add_whole_number(app, "--min-voxels", c.options.labels.min_voxels, 0, max_min_voxels,

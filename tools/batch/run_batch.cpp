@@ -98,7 +98,8 @@ void check_jobs_are_independent(const CommandLine& batch, const std::vector<Job>
     if (writer == written.end() || writer->second == id) continue;
     std::string message = "job '";
     message.append(id).append("' reads ").append(path).append(", which job '").append(writer->second);
-    throw InputError(file, 0, message + "' writes; jobs have no order: give it a batch of its own");
+    throw InputError(file, 0,
+                     message + "' writes; jobs run in no particular order: put it into a separate batch");
   }
 }
 

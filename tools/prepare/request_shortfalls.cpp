@@ -65,7 +65,7 @@ std::string rules_behind_count(const PrepareRun& run, double asked, double reach
   const PrepareReport& report = run.report;
   if (reached > asked && report.simplify->out_of_time) return "--time-limit";
   if (run.task == Task::improve)
-    return "nothing: shapes were worth " + std::string(reached < asked ? "fewer" : "more") + " tets";
+    return "nothing: good shapes require " + std::string(reached < asked ? "fewer" : "more") + " tets";
   if (reached > asked && report.mesher && static_cast<double>(report.mesher->filling_tets) > asked)
     return "walls so thin that fewer tets would be flat; request " +
            std::to_string(report.mesher->filling_tets) + " or more, or leave them out with --min-thickness";
