@@ -39,7 +39,7 @@ void repair(TetMesh& mesh, const std::string& file, PrepareReport& report) {
   add(tet_points_merged, found.merged_points, "points repeated for each tet",
       "merged where coordinates are equal");
   add(tets_collapsed, found.removed_tets, "tets with a repeated vertex", "left out");
-  add(tets_turned, found.turned_tets, "tets with reversed vertex order", "turned");
+  add(tets_turned, found.turned_tets, "tets with reversed vertex order", "corrected");
   std::vector<Vec3> first;
   if (!found.first_inverted.empty()) first.push_back(mesh.points[mesh.tets[found.first_inverted.front()][0]]);
   add(tets_inverted, found.inverted_tets, "flat or negative tets", "kept unless the run repairs them", first);

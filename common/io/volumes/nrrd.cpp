@@ -345,10 +345,9 @@ class NrrdHeader {
     if (space == "scanner-xyz" || space == "3d-right-handed" || space == "3d-left-handed") {
       return space == "scanner-xyz" ? space : "3D" + space.substr(2);
     }
-    fields_.fail("space",
-                 "space " + in_quotes(fields_.text("space")) +
-                     " is not supported; supported: right-anterior-superior, left-anterior-superior, "
-                     "left-posterior-superior, scanner-xyz, 3D-right-handed and 3D-left-handed");
+    fields_.fail("space", "space " + in_quotes(fields_.text("space")) +
+                              " is not supported; use right-anterior-superior, left-anterior-superior, "
+                              "left-posterior-superior, scanner-xyz, 3D-right-handed or 3D-left-handed");
   }
 
   /// Whether the samples along an axis lie half a step inside the range of `axis mins` and `axis maxs`,

@@ -152,7 +152,8 @@ def _blocks(value: Any, name: str) -> list[Block]:
     try:
         by_kind = dict(value.cells_dict)
     except Exception as error:  # raised by the other library, for example for cells of different sizes
-        raise _core.InputError(f"{name}: the types of its cells cannot be determined ({error}); give triangles or tets") from None
+        raise _core.InputError(f"{name}: the types of its cells cannot be determined ({error}); give triangles or "
+                               "tets") from None
     by_type = getattr(value, "cell_data_dict", None)
     of_all = getattr(value, "cell_data", None) or {}
     types = getattr(value, "celltypes", None)

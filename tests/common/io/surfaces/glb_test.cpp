@@ -164,19 +164,19 @@ TEST(Glb, BadInput) {
     for (const auto& [where, value] : changes) scene[json::json_pointer(where)] = value;
     expect_input_error(read_glb, glb(scene, tet_bytes()), first, second);
   };
-  refused({{"/scene", 3}}, "number 3", "scenes");
-  refused({{"/scene", -1}}, "number -1", "scenes");
+  refused({{"/scene", 3}}, "index 3 ", "scenes");
+  refused({{"/scene", -1}}, "index -1 ", "scenes");
   refused({{"/nodes", 7}}, "\"nodes\" is not a list");
-  refused({{"/scenes/0/nodes/0", 5}}, "number 5", "nodes");
-  refused({{"/nodes/0/mesh", 2}}, "number 2", "meshes");
+  refused({{"/scenes/0/nodes/0", 5}}, "index 5 ", "nodes");
+  refused({{"/nodes/0/mesh", 2}}, "index 2 ", "meshes");
   refused({{"/nodes/0/mesh", "a"}}, "nodes 0", "\"mesh\"");
   refused({{"/nodes/0/children", {0}}}, "nodes 0", "child");
   refused({{"/nodes/0/children", {1}}, {"/nodes/1", json::object()}, {"/scenes/0/nodes", {0, 1}}}, "nodes 1",
           "both a node and the scene");
   refused({{"/nodes/0/scale", {1, 1}}}, "nodes 0", "not 3 numbers");
   refused({{"/nodes/0/translation", {1e300, 1e300, "a"}}}, "nodes 0", "not 3 numbers");
-  refused({{"/meshes/0/primitives/0/indices", 9}}, "number 9", "accessors");
-  refused({{"/meshes/0/primitives/0/indices", -2}}, "number -2", "accessors");
+  refused({{"/meshes/0/primitives/0/indices", 9}}, "index 9 ", "accessors");
+  refused({{"/meshes/0/primitives/0/indices", -2}}, "index -2 ", "accessors");
   refused({{"/meshes/0/primitives/0/mode", 7}}, "unknown mode 7");
   refused({{"/meshes/0/primitives/0/attributes/POSITION", 0.5}}, "meshes 0", "\"POSITION\"");
   refused({{"/meshes/0/primitives/0/attributes/POSITION", 1}}, "accessors 1",
@@ -187,7 +187,7 @@ TEST(Glb, BadInput) {
   refused({{"/accessors/0/byteOffset", 1000000000}}, "accessors 0", "its buffer view");
   refused({{"/bufferViews/0/byteLength", 1000}}, "bufferViews 0", "end of the file");
   refused({{"/bufferViews/0/byteStride", 4}}, "accessors 0", "its buffer view");
-  refused({{"/accessors/1/bufferView", 7}}, "number 7", "bufferViews");
+  refused({{"/accessors/1/bufferView", 7}}, "index 7 ", "bufferViews");
   refused({{"/accessors/1/count", 11}}, "11 corners", "multiple of three");
   refused({{"/accessors/0/count", 4}}, "refers to vertex 4", "there are 4");
   refused({{"/buffers/0/uri", "a.bin"}}, "another file");

@@ -77,7 +77,7 @@ TEST(Inr, BadInput) {
   expect_refused(header("TYPE=float\nPIXSIZE=32 bits\n") + body, "no line \"cpu\"");
   expect_refused(header(bytes8 + "VX=0\n") + body, "along axis 0 is zero");
   expect_refused(header(bytes8 + "TX=inf\n") + body, "not finite");
-  expect_refused(header(bytes8 + "RZ=90\n") + body, "line 10", "turned");
+  expect_refused(header(bytes8 + "RZ=90\n") + body, "line 10", "rotated");
   expect_refused(header(bytes8) + body.substr(1), "need 24 bytes, but only 23 follow");
   expect_refused(deflated(header(bytes8) + body.substr(1)), "only 23 are there");
   expect_refused(deflated(header(bytes8)).substr(0, 30), "f: ");
