@@ -187,10 +187,8 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
   app.require_subcommand(1);
   app.footer(
       "Exit status: 0 done, 1 written but short of the request (check: not valid), 2 invalid call, 3 bad "
-      "input,\n"
-      "4 nothing to mesh, 5 output could not be written, or out of memory or time, 70 a bug in tetwright, "
-      "130 "
-      "interrupted.");
+      "input,\n4 nothing to mesh, 5 output could not be written, or out of memory or time, 70 a bug in "
+      "tetwright, 130 interrupted.");
   for (const CommandEntry& entry : commands)
     entry.add_options(*app.add_subcommand(name_of(entry.command), entry.description), out);
   if (!parse_arguments(app, argc, argv)) return false;
