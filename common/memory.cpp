@@ -90,7 +90,7 @@ void require_memory(double bytes, const std::string& what, const std::string& re
   constexpr double gigabyte = 1 << 30;
   const double available = available_memory();
   if (bytes <= available) return;
-  throw OutputError(what + " would take about " + short_number(bytes / gigabyte) + " GB of memory, and " +
+  throw OutputError(what + " would take about " + short_number(bytes / gigabyte) + " GB of memory, but " +
                     short_number(available / gigabyte) + " GB are available; " + remedy);
 }
 

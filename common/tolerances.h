@@ -39,11 +39,11 @@ inline constexpr double inverted_quality = 1e-9;
 inline constexpr double smallest_distance = 1e-6;
 /// Lattice units: minimum difference between the distance of a point's own region and all other distances, so
 /// that its own region is also the nearest by value.
-inline constexpr float smallest_lead = 1e-6F;
+inline constexpr float min_region_gap = 1e-6F;
 /// Offset of grid points, always in the same direction, when solid angles are summed: on a surface, rounding
 /// of several angles could add up to any value. The three components differ, so that no point stays on a
 /// plane along the axes or their diagonals.
-inline constexpr double aside[3] = {1.1e-5, 1.9e-5, 2.7e-5};
+inline constexpr double winding_offset[3] = {1.1e-5, 1.9e-5, 2.7e-5};
 /// Grid points farther than this from the projection of a triangle are certainly outside it: the coordinates
 /// of its crossings are rounded.
 inline constexpr double projected_triangle = 1e-3;

@@ -46,7 +46,7 @@ enum class Kind { improve, coarsen, refine };
 constexpr const char* kind_names[] = {"improve", "coarsen", "refine"};
 
 /// A region, as a list of tets and as a box.
-struct Place {
+struct Region {
   std::vector<Index> tets;
   Box3 box;
 };
@@ -75,8 +75,8 @@ class Subject {
 
   /// Up to `count` regions of `tets` tets each, separate from each other, from the boundary and from the
   /// regions of earlier calls. Every second one lies on the interface.
-  /// \pre places_for() has been called for that size.
-  std::vector<Place> places(std::size_t tets, std::size_t count) {
+  /// \pre region_count() has been called for that size.
+  std::vector<Region> regions(std::size_t tets, std::size_t count) {
     const auto begin = centres_.begin() + static_cast<std::ptrdiff_t>(std::min(taken_, centres_.size()));
     taken_ += count;
     const auto end = centres_.begin() + static_cast<std::ptrdiff_t>(std::min(taken_, centres_.size()));
@@ -84,13 +84,13 @@ class Subject {
   }
 
   /// Number of regions of a size that fit into the lattice.
-  std::size_t places_for(std::size_t tets) {
+  std::size_t region_count(std::size_t tets) {
     list_centres(width_of(tets));
     return centres_.size();
   }
 
   /// Moves those points of the tets that lie within a box.
-  void shake(const std::vector<Index>& tets, const Box3& box) {
+  void perturb(const std::vector<Index>& tets, const Box3& box) {
     std::vector<Index> points;
     for (const Index t : tets)
       for (const Index p : remesher_->tet(t))
@@ -158,7 +158,7 @@ class Subject {
 
   /// Finds the regions at the centres. Reads the whole mesh, so that a call starts with cold processor
   /// caches.
-  std::vector<Place> regions_at(const std::vector<Vec3>& centres, std::size_t tets, double width) const {
+  std::vector<Region> regions_at(const std::vector<Vec3>& centres, std::size_t tets, double width) const {
     struct Candidate {
       double distance;  ///< distance of its nearest vertex from the centre, in the maximum norm
       Index tet;
@@ -186,18 +186,18 @@ class Subject {
         distance = std::min(distance, (x - centres[found->second]).cwiseAbs().maxCoeff());
       near[found->second].push_back({distance, t});
     }
-    std::vector<Place> places;
+    std::vector<Region> regions;
     for (std::size_t i = 0; i < centres.size(); ++i) {
       std::vector<Candidate>& list = near[i];
       const std::size_t size = std::min(tets, list.size());
       if (size == 0) continue;
       std::nth_element(list.begin(), list.begin() + static_cast<std::ptrdiff_t>(size - 1), list.end());
       const Vec3 half = Vec3::Constant(list[size - 1].distance);
-      Place place{{}, {centres[i] - half, centres[i] + half}};
-      for (std::size_t k = 0; k < size; ++k) place.tets.push_back(list[k].tet);
-      places.push_back(std::move(place));
+      Region region{{}, {centres[i] - half, centres[i] + half}};
+      for (std::size_t k = 0; k < size; ++k) region.tets.push_back(list[k].tet);
+      regions.push_back(std::move(region));
     }
-    return places;
+    return regions;
   }
 
   int n_;
@@ -222,22 +222,22 @@ nlohmann::json measure_calls(double size, std::size_t tets, const Options& o) {
   const ThreadLimit one(1);
   Subject subject(size, o);
   const std::size_t count = subject.remesher().tet_count();
-  const std::size_t calls = std::min<std::size_t>(o.repeats, subject.places_for(tets) / series_of_a_size);
+  const std::size_t calls = std::min<std::size_t>(o.repeats, subject.region_count(tets) / series_of_a_size);
   nlohmann::json series = nlohmann::json::array();
   for (const Kind kind : {Kind::improve, Kind::coarsen, Kind::refine})
     for (const bool box : {false, true}) {
       std::vector<double> ms, set_ms;
       std::size_t operations = 0, changed = 0;
-      for (const Place& place : subject.places(tets, calls)) {
+      for (const Region& region : subject.regions(tets, calls)) {
         if (kind == Kind::improve) {
           const ThreadStopwatch watch;
-          subject.shake(place.tets, place.box);
+          subject.perturb(region.tets, region.box);
           set_ms.push_back(1000 * watch.seconds());
         }
-        const RemeshRegion region =
-            box ? RemeshRegion::box(place.box.low, place.box.high) : RemeshRegion::tets(place.tets);
+        const RemeshRegion remesh_region =
+            box ? RemeshRegion::box(region.box.low, region.box.high) : RemeshRegion::tets(region.tets);
         const ThreadStopwatch watch;
-        const RemeshChanges changes = subject.call(kind, region);
+        const RemeshChanges changes = subject.call(kind, remesh_region);
         ms.push_back(1000 * watch.seconds());
         operations += changes.operations;
         changed += changes.added_tets.size();
@@ -292,7 +292,7 @@ nlohmann::json measure_row(const Options& o) {
     const Box3 box{centre - Vec3::Constant(half), centre + Vec3::Constant(half)};
     if (kind == Kind::improve) {
       std::erase_if(moved, [&](Index t) { return !r.has_tet(t); });
-      subject.shake(moved, box);
+      subject.perturb(moved, box);
     }
     const ThreadStopwatch watch;
     const RemeshChanges changes = subject.call(kind, RemeshRegion::box(box.low, box.high));

@@ -59,12 +59,12 @@ class CreasePoints {
         turns.push_back({angle, p});
     std::stable_sort(turns.begin(), turns.end(),
                      [](const Turn& x, const Turn& y) { return x.angle > y.angle; });
-    std::set<Index> beside;  // points within `reach` of a sharper corner
+    std::set<Index> near_sharper_corner;  // points within `reach` of a sharper corner
     for (const Turn& t : turns) {
-      if (beside.contains(t.point)) continue;
+      if (near_sharper_corner.contains(t.point)) continue;
       corners.push_back(t.point);
       for (const Index towards : at_.at(t.point).others)
-        walk(t.point, towards, reach, [&](Index p) { beside.insert(p); });
+        walk(t.point, towards, reach, [&](Index p) { near_sharper_corner.insert(p); });
     }
     std::sort(corners.begin(), corners.end());
     return corners;

@@ -251,11 +251,11 @@ FoundParts find_parts(std::span<const Vec3> points, std::span<const Triangle> tr
 }
 
 [[noreturn]] void throw_too_many(const std::string& file) {
-  throw InputError(
-      file, 0,
-      "its sharp edges and labels cut it into more than the " + std::to_string(max_patches) +
-          " patches that are possible; use a larger --feature-angle or --feature-angle off, or leave labels "
-          "of single faces out of the file");
+  throw InputError(file, 0,
+                   "its sharp edges and labels divide it into more than the maximum of " +
+                       std::to_string(max_patches) +
+                       " patches; use a larger --feature-angle or --feature-angle off, or remove labels of "
+                       "single faces from the file");
 }
 
 }  // namespace

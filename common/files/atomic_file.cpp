@@ -39,7 +39,7 @@ std::string link_target(const std::string& path) {
   // 40 is the system's own limit on links.
   for (int i = 0; i < 40 && fs::is_symlink(fs::symlink_status(target, error)); ++i) {
     const fs::path next = fs::read_symlink(target, error);
-    if (error) fail(path, "the link can't be followed", error.value());
+    if (error) fail(path, "the link cannot be followed", error.value());
     target = target.parent_path() / next;  // an absolute `next` replaces the whole path
   }
   if (fs::is_symlink(fs::symlink_status(target, error))) fail(path, "too many links", ELOOP);
@@ -253,9 +253,9 @@ void check_output_file(const std::string& path) {
   if (stat(target.c_str(), &status) == 0) {
     if (S_ISDIR(status.st_mode)) fail(path, "it is a folder", 0);
     if (!S_ISREG(status.st_mode)) fail(path, "it is not a regular file", 0);
-    if (access(target.c_str(), W_OK) != 0) fail(path, "the file there is protected", errno);
+    if (access(target.c_str(), W_OK) != 0) fail(path, "the existing file is write-protected", errno);
   } else if (errno != ENOENT) {
-    fail(path, "can't be looked at", errno);
+    fail(path, "cannot be examined", errno);
   }
   const std::string folder = folder_of(target);
   if (stat(folder.c_str(), &status) != 0) fail(path, "folder " + folder, errno);
@@ -292,7 +292,7 @@ void OutputFiles::write(const std::string& path, const std::function<void(const 
   const FileSizeSignalIgnored ignored;
   auto pending = std::make_unique<Pending>(path);
   TemporaryFile& temporary = pending->temporary;
-  if (temporary.file() < 0) fail(path, "no file can be made in its folder", errno);
+  if (temporary.file() < 0) fail(path, "cannot create a file in its folder", errno);
   struct stat status;
   if (stat(pending->target.c_str(), &status) == 0 && fchmod(temporary.file(), status.st_mode & 07777) != 0)
     fail(path, "permissions", errno);

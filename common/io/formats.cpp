@@ -127,7 +127,7 @@ const typename Formats::value_type& need_format(const Formats& formats, const st
                    (extension.empty() ? "no extension"
                     : only_read       ? "extension " + in_quotes(extension) + " can be read, not written,"
                                       : "unknown extension " + in_quotes(extension)) +
-                   " for a " + kind_name(kind) + "; known are " + known_extensions(kind, use));
+                   " for a " + kind_name(kind) + "; supported: " + known_extensions(kind, use));
 }
 
 TetFormatInfo info_of(const TetFormat& format) {
@@ -149,8 +149,8 @@ void check_names_format(const std::string& path, const std::string& name) {
   }
   if (several && !extension.empty())
     throw UsageError(path + ": " + name +
-                     " is several files, which have extensions of their own; give a name that ends in " +
-                     own + ", or in no extension");
+                     " writes several files with their own extensions; give a name that ends in " + own +
+                     ", or has no extension");
 }
 
 /// Format with this name, or of the path's extension if the name is empty.
@@ -165,7 +165,7 @@ const TetFormat& need_written_format(const std::string& path, const std::string&
     }
     if (!known.ends_with(format.name)) known.append(known.empty() ? "" : " ").append(format.name);
   }
-  throw UsageError("there is no format " + in_quotes(name) + " for a tet mesh; known are " + known);
+  throw UsageError("there is no format " + in_quotes(name) + " for a tet mesh; supported: " + known);
 }
 
 /// Format with this name, an extension with or without its dot, or of the path's extension if the name is
@@ -179,7 +179,7 @@ const typename Formats::value_type& need_written_format(const Formats& formats, 
   const bool only_read = find_format(formats, path_of_name, FileUse::read) != nullptr;
   throw UsageError((only_read ? "the format " + in_quotes(name) + " can be read, not written,"
                               : "there is no format " + in_quotes(name)) +
-                   " for a " + kind_name(kind) + "; known are " + known_extensions(kind, FileUse::write));
+                   " for a " + kind_name(kind) + "; supported: " + known_extensions(kind, FileUse::write));
 }
 
 const SurfaceFormat& need_surface_format(const std::string& path) {
@@ -192,7 +192,7 @@ template <class Format>
 const Format& streamed(const Format& format, const std::string& name) {
   if (is_one_file(format)) return format;
   throw UsageError(name + ": " + format.extension +
-                   " is several files, which no stream is; give their name, or " + "one of " +
+                   " is several files, which a stream cannot hold; give a file name, or " + "one of " +
                    streamed_extensions());
 }
 
@@ -369,9 +369,9 @@ std::optional<SurfaceWithFields> read_surface_with_fields(const std::string& pat
   if (!format) format = find_format(surface_formats, path, FileUse::read);
   if (!format && file_kind(path) == FileKind::tet_mesh) return {};
   if (!format || !format->read_with_fields)
-    throw UsageError(path + ": " + in_quotes(extension_of(path)) +
-                     " is no extension of files with numbers of points; known are " +
-                     point_field_extensions());
+    throw UsageError(
+        path + ": " + in_quotes(extension_of(path)) +
+        " is not an extension of files with point fields; supported: " + point_field_extensions());
   return format->read_with_fields(read_whole_file(path), path);
 }
 

@@ -21,8 +21,8 @@ using Fields = std::vector<MeshField>;
 [[noreturn]] void fail_without_field(const std::string& file, const Fields& all, bool several) {
   if (all.empty())
     throw InputError(file +
-                     ": its points have no numbers; write the edge length wanted at each point as a "
-                     "point field named \"size\"");
+                     ": it has no point fields; write the target edge length at each point as a point field "
+                     "named \"size\"");
   std::vector<std::string> names;
   for (const MeshField& field : all)
     if (!several || field.components == 1) names.push_back(field.name);
@@ -46,9 +46,9 @@ MeshField take_field(Fields fields, const std::string& file) {
   for (const MeshField& field : fields)
     if (field.components != 1 &&
         std::find(size_names.begin(), size_names.end(), field.name) != size_names.end())
-      throw InputError(file + ": its point field " + in_quotes(field.name) + " has " +
-                       std::to_string(field.components) +
-                       " numbers for each point, and an edge length is one; give it one, or another name");
+      throw InputError(
+          file + ": its point field " + in_quotes(field.name) + " has " + std::to_string(field.components) +
+          " numbers for each point, but an edge length is one number; give it one, or rename it");
   if (floating.size() == 1) return std::move(*floating.front());
   if (scalars.size() == 1) return std::move(*scalars.front());
   fail_without_field(file, fields, scalars.size() > 1);
@@ -63,7 +63,7 @@ MeshField checked_lengths(Fields fields, const Elements& elements, const std::st
       if (const double value = field.values[p]; !(std::isfinite(value) && value > 0))
         throw InputError(file + ": point " + std::to_string(p) + " (counted from 0) has the value " +
                          short_number(value) + " in point field " + in_quotes(field.name) +
-                         "; an edge length must be a number above 0: give it one");
+                         "; an edge length must be a number above 0: correct it");
   return field;
 }
 
@@ -75,7 +75,7 @@ void check_mesh_sizes_path(const std::string& file, const std::string& others) {
   const bool mesh = may_hold_surface(file) || file_kind(file) == FileKind::tet_mesh;
   throw UsageError(file + ": " +
                    (extension.empty() ? "no extension"
-                    : mesh            ? "files " + in_quotes(extension) + " have no numbers of points"
+                    : mesh            ? "files " + in_quotes(extension) + " have no point fields"
                                       : "unknown extension " + in_quotes(extension)) +
                    "; edge lengths are read from " + point_field_extensions() +
                    (others.empty() ? "" : " " + others));

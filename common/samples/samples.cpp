@@ -311,7 +311,7 @@ Sample make_sample(const std::string& name) {
     if (name == sample.name) return std::visit([](auto make) { return Sample(make()); }, sample.make);
     known += (known.empty() ? "" : " ") + std::string(sample.name);
   }
-  throw UsageError("there is no sample " + in_quotes(name) + "; known are " + known);
+  throw UsageError("there is no sample " + in_quotes(name) + "; supported: " + known);
 }
 
 }  // namespace tetwright

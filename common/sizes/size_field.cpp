@@ -93,10 +93,10 @@ void SizeField::limit_growth() {
     int x, y, z;
     float growth;
   };
-  std::vector<Step> before;  // the half of a node's 26 neighbours that precedes it
+  std::vector<Step> preceding_neighbours;  // the half of a node's 26 neighbours that precedes it
   for (int k = 0; k < 13; ++k) {
     const int x = k % 3 - 1, y = k / 3 % 3 - 1, z = k / 9 - 1;
-    before.push_back(
+    preceding_neighbours.push_back(
         {x, y, z,
          static_cast<float>(limits_.grading / max_detour * spacing_ * std::sqrt(x * x + y * y + z * z))});
   }
@@ -112,7 +112,7 @@ void SizeField::limit_growth() {
             const int x = sign > 0 ? k : size[0] - 1 - k, y = sign > 0 ? j : size[1] - 1 - j,
                       z = sign > 0 ? i : size[2] - 1 - i;
             float& value = values_[index(x, y, z)];
-            for (const Step& s : before) {
+            for (const Step& s : preceding_neighbours) {
               const int nx = x + sign * s.x, ny = y + sign * s.y, nz = z + sign * s.z;
               if (!inside(nx, size[0]) || !inside(ny, size[1]) || !inside(nz, size[2])) continue;
               const float limit = values_[index(nx, ny, nz)] + s.growth;

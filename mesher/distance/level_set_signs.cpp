@@ -101,8 +101,9 @@ NodeWinding::NodeWinding(std::span<const Vec3> points, std::span<const Triangle>
 double NodeWinding::at(int x, int y, int z) const {
   const int whole = closed_.at(x, y, z);
   if (!open_) return whole;
-  static const Vec3 aside(tolerance::aside[0], tolerance::aside[1], tolerance::aside[2]);
-  const double winding = whole + open_->winding_number(Vec3(x, y, z) + aside);
+  static const Vec3 offset(tolerance::winding_offset[0], tolerance::winding_offset[1],
+                           tolerance::winding_offset[2]);
+  const double winding = whole + open_->winding_number(Vec3(x, y, z) + offset);
   const std::array<int, 3> p{x, y, z};
   bool in_box = true;
   for (int a = 0; a < 3; ++a) in_box &= p[a] >= low_[a] && p[a] <= high_[a];

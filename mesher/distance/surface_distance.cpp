@@ -87,8 +87,9 @@ bool SurfaceDistance::inside(const Vec3& point) const {
         if (crossing != 0 && at_or_above(a, b, c, crossing, point)) winding += crossing;
       });
   if (!open_) return winding > 0;
-  static const Vec3 aside(tolerance::aside[0], tolerance::aside[1], tolerance::aside[2]);
-  return winding + open_->winding_number(point + aside) >= DistanceTuning::Caps::inside_winding;
+  static const Vec3 offset(tolerance::winding_offset[0], tolerance::winding_offset[1],
+                           tolerance::winding_offset[2]);
+  return winding + open_->winding_number(point + offset) >= DistanceTuning::Caps::inside_winding;
 }
 
 std::optional<SurfacePlace> SurfaceDistance::nearest_facing(const Vec3& point, const Vec3& normal,

@@ -198,7 +198,7 @@ void read_star_values(LabelledLattice& lattice, const MaterialField& field) {
           own = &values[i];
         else
           others = std::min(others, values[i]);
-      if (own && !(*own <= others - tolerance::smallest_lead)) *own = others - tolerance::smallest_lead;
+      if (own && !(*own <= others - tolerance::min_region_gap)) *own = others - tolerance::min_region_gap;
     }
   });
 }

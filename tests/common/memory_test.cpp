@@ -64,7 +64,7 @@ TEST_F(Memory, ThatIsNotThereIsRefusedWithBothNumbers) {
     require_memory(1e18, "the mesh", "use a lower resolution");
     FAIL();
   } catch (const OutputError& e) {
-    EXPECT_NE(std::string(e.what()).find("the mesh would take about 9.31323e+08 GB of memory, and "),
+    EXPECT_NE(std::string(e.what()).find("the mesh would take about 9.31323e+08 GB of memory, but "),
               std::string::npos)
         << e.what();
     EXPECT_TRUE(std::string(e.what()).ends_with("GB are available; use a lower resolution"));

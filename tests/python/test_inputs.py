@@ -95,10 +95,10 @@ def test_curved_cells_are_taken_by_their_corners(cube_mesh):
     ten = np.hstack([TWO_TETS, np.stack([middles, middles])])
     made = tetwright.improve(meshio.Mesh(points, [("tetra10", ten)], point_data={"heat": np.arange(14.0)}))
     assert made.stats["input"]["points"] == 8
-    assert "6 midside nodes; tets of ten nodes are taken by their corners (dropped)" in made.notes[0]
+    assert "6 midside nodes; tets of ten nodes are reduced to their corners (dropped)" in made.notes[0]
     six = np.hstack([CUBE_TRIANGLES, CUBE_TRIANGLES[:, [1, 2, 0]]])
     made = tetwright.mesh(meshio.Mesh(CUBE_POINTS, [("triangle6", six)]), resolution=8)
-    assert "triangles of 6 points are taken by their corners" in made.notes[0]
+    assert "triangles of 6 points are reduced to their corners" in made.notes[0]
     assert len(made.tets) == len(cube_mesh.tets)
     second = tetwright.mesh(CUBE, resolution=8, order=2)
     assert "midside nodes" in tetwright.improve(second, free_count=True).notes[0]
@@ -236,7 +236,7 @@ def test_sets_of_cells_are_patches_or_noted(cube_mesh, tmp_path):
     # Shells, tets in sets, and invalid numbers.
     shells = [*cells, ("triangle", np.array([[0, 1, 2], [1, 2, 3]]) * (len(cube_mesh.points) // 4))]
     made = improved(cells=shells, cell_sets={"shell": [np.array([3]), None, np.array([0, 1])]})
-    assert "2 triangles of sets that are no faces of a tet (dropped)" in made.notes[0]
+    assert "2 triangles of sets that are not faces of a tet (dropped)" in made.notes[0]
     assert '1 sets of cells ("shell") (dropped)' in made.notes[0] and len(names_of_surfaces(made)) == 1
     zero = [np.zeros(len(c), int) for _, c in cells]
     made = improved(cell_data={"gmsh:physical": zero}, field_data={"zero": np.array([0, 2])})
@@ -324,7 +324,7 @@ def test_help_and_logs_are_the_programs(tmp_path, capfd):
         with pytest.raises(tetwright.UsageError, match="are not options here"):
             tetwright.prepare(CUBE, target_tets=300, **options)
     for options in {}, {"output": tmp_path / "a.vtu"}:
-        with pytest.raises(tetwright.UsageError, match="log_file is the program's"):
+        with pytest.raises(tetwright.UsageError, match="log_file is for the program only"):
             tetwright.prepare(CUBE, target_tets=300, log_file=tmp_path / "log.txt", **options)
     assert capfd.readouterr().out == "" and not list(tmp_path.iterdir())
 
@@ -344,7 +344,7 @@ def test_what_is_no_input_is_refused():
             tetwright.mesh(scan, resolution=8)
         assert len(str(caught.value)) > 10
     for tets in [[0.9, 4.9, 2.9, 1.9]], [[0, 4, 2, np.nan]]:
-        with pytest.raises(tetwright.InputError, match="tets hold .* which is no number of a point"):
+        with pytest.raises(tetwright.InputError, match="tets hold .* which is not the number of a point"):
             tetwright.improve((CUBE_POINTS, tets))
     with pytest.raises(tetwright.InputError, match="materials are masked"):
         tetwright.improve((CUBE_POINTS, TWO_TETS, np.ma.array([1, 2], mask=[True, False])))
@@ -376,7 +376,7 @@ def test_names_of_files_are_whole(tmp_path, cube_mesh, monkeypatch):
 
 def test_size_fields_are_named_by_their_argument(cube_mesh):
     lengths = np.full(8, 0.5)
-    for field, message in [((CUBE_POINTS, CUBE_TRIANGLES - 1, lengths), "names point -1"),
+    for field, message in [((CUBE_POINTS, CUBE_TRIANGLES - 1, lengths), "refers to point -1"),
                            ((CUBE_POINTS, CUBE_TRIANGLES + 0.5, lengths), "cells hold 0.5"),
                            ((CUBE_POINTS, CUBE_TRIANGLES, lengths - 0.5), "length of point 0 is 0"),
                            ((CUBE_POINTS, CUBE_TRIANGLES, lengths * np.nan), "length of point 0 is nan"),

@@ -182,7 +182,7 @@ def test_size_fields_are_files_arrays_or_meshes(tmp_path, ball):
                                                  np.full(len(surface.points), 0.5))).stats["edge_lengths"]["edges"]
     with pytest.raises(tetwright.InputError, match="one for each of the 4 points"):
         tetwright.simplify(dense, size_field=(corners, tets, lengths[:3]))
-    with pytest.raises(tetwright.InputError, match="names point 4"):
+    with pytest.raises(tetwright.InputError, match="refers to point 4"):
         tetwright.simplify(dense, size_field=(corners, tets + 1, lengths))
     del grid.point_data["size"]
     with pytest.raises(tetwright.InputError, match="no field size"):
@@ -213,15 +213,15 @@ def test_errors_carry_the_programs_message(ball, ball_arrays):
     assert caught.value.status == 2 and isinstance(caught.value, ValueError)
     with pytest.raises(tetwright.UsageError, match="--target-tets is required"):
         tetwright.prepare(ball)
-    with pytest.raises(tetwright.UsageError, match="affine says what spacing"):
+    with pytest.raises(tetwright.UsageError, match="affine includes spacing"):
         tetwright.prepare(labels_of_two_balls(), target_tets=9, spacing=1, affine=np.eye(4))
     with pytest.raises(tetwright.UsageError, match="no input is one"):
         tetwright.prepare(ball, target_tets=9, spacing=1)
     with pytest.raises(tetwright.InputError, match="nowhere.ply"):
         tetwright.prepare("nowhere.ply", target_tets=5)
-    with pytest.raises(tetwright.InputError, match="names point 99999999"):
+    with pytest.raises(tetwright.InputError, match="refers to point 99999999"):
         tetwright.mesh((points, np.array([[0, 1, 99999999]])))
-    with pytest.raises(tetwright.InputError, match="names point -1"):
+    with pytest.raises(tetwright.InputError, match="refers to point -1"):
         tetwright.mesh((points, np.array([[0, 1, -1]])))
     with pytest.raises(tetwright.InputError, match="not finite"):
         tetwright.mesh((np.full((3, 3), np.nan), np.array([[0, 1, 2]])))
@@ -374,6 +374,6 @@ def test_what_a_file_has_no_place_for_is_noted(tmp_path):
                                          cell_data={"heat": [np.array([1.5])], "a\tb": [np.array([2.5])],
                                                     "a_b": [np.array([3.5])]}), fix_boundary=True)
     assert {n: v[0] for n, v in made.fields.items()} == {"heat": 1.5, "a_b": 2.5, "a_b_2": 3.5}
-    assert "names of fields as they were" in made.notes[0]
+    assert "original names of fields" in made.notes[0]
     made.write(tmp_path / "m.inp")
-    assert "m.inp: 3 fields (not written; .inp has no place for them)" in made.notes[-1]
+    assert "m.inp: 3 fields (not written; .inp cannot hold them)" in made.notes[-1]

@@ -32,15 +32,14 @@ struct CommandEntry {
 constexpr std::array<CommandEntry, 7> commands{{
     {Command::prepare, "Turns scans or a segmented volume into a simulation mesh, in one go", add_prepare},
     {Command::mesh, "Turns scans or a segmented volume into a dense mesh", add_mesh},
-    {Command::simplify, "Turns a tet mesh into one of fewer tets", add_simplify},
-    {Command::improve, "Improves the shapes of a tet mesh and keeps about its count", add_improve},
+    {Command::simplify, "Reduces the number of tets of a tet mesh", add_simplify},
+    {Command::improve, "Improves the shapes of a tet mesh, keeping the number of tets nearly the same",
+     add_improve},
     {Command::check,
-     "Reports validity, topology and quality of a tet mesh, and how far it is from surfaces; status 1 if it "
+     "Reports validity, topology and quality of a tet mesh, and its distance from surfaces; status 1 if it "
      "is not valid (a warning, such as an unused point, leaves it valid)",
      add_check},
-    {Command::batch,
-     "Carries out many jobs, several at a time, and goes on where a call before ended; status 1 unless all "
-     "ended with 0",
+    {Command::batch, "Runs many jobs concurrently; resumes an earlier call; status 1 unless all ended with 0",
      add_batch},
     {Command::sample, "Writes a built-in sample", add_sample},
 }};
@@ -187,11 +186,9 @@ bool parse_command_line(int argc, char** argv, CommandLine& out) {
   app.set_version_flag("--version", TETWRIGHT_VERSION);
   app.require_subcommand(1);
   app.footer(
-      "Exit status: 0 done, 1 written but short of what was asked (check: not valid), 2 wrong call, 3 bad "
-      "input,\n"
-      "4 nothing to mesh, 5 output could not be written, or out of memory or time, 70 a bug in tetwright, "
-      "130 "
-      "interrupted.");
+      "Exit status: 0 done, 1 written but short of the request (check: not valid), 2 invalid call, 3 bad "
+      "input,\n4 nothing to mesh, 5 output could not be written, or out of memory or time, 70 a bug in "
+      "tetwright, 130 interrupted.");
   for (const CommandEntry& entry : commands)
     entry.add_options(*app.add_subcommand(name_of(entry.command), entry.description), out);
   if (!parse_arguments(app, argc, argv)) return false;

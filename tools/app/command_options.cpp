@@ -37,7 +37,8 @@ void add_choice(CLI::App& app, const char* option, Value& to, std::initializer_l
          option,
          [option, words, known, &to](const std::string& text) {
            const auto found = words.find(text);
-           if (found == words.end()) throw CLI::ValidationError(option, "'" + text + "' is none of " + known);
+           if (found == words.end())
+             throw CLI::ValidationError(option, "'" + text + "' is not one of " + known);
            to = found->second;
          },
          description)
@@ -47,25 +48,24 @@ void add_choice(CLI::App& app, const char* option, Value& to, std::initializer_l
 
 void add_stats(CLI::App& app, CommandLine& c) {
   app.add_option("--stats", c.outputs.stats,
-                 "Write statistics of the run to this .json file, also of one that fails; -: to standard "
-                 "output, instead of the report")
+                 "Write statistics of the run to this .json file, even if it fails; -: to standard output, "
+                 "instead of the report")
       ->type_name("FILE");
 }
 
 void add_common(CLI::App& app, CommandLine& c) {
   add_whole_number(app, "--threads", c.options.limits.threads, 1, max_threads_option,
-                   "Max number of threads, 1 to 1024 (default: all of the machine); more than four for each "
-                   "processor, or 16, are never used");
+                   "Max number of threads, 1 to 1024 (default: all of the machine); at most four for each "
+                   "processor, or 16 if that is more, are used");
   add_number(app, "--memory-limit", c.options.limits.memory, positive,
-             "Use at most so many GB (2^30 bytes) of memory: cells that would not fit become larger where no "
-             "option decides them (status 1), and what still does not fit is refused");
-  app.add_flag("--quiet", c.console.quiet, "Print only errors and what falls short");
+             "Use at most this many GB (2^30 bytes) of memory: cells that would not fit become larger unless "
+             "an option sets their size (status 1), and what still does not fit is refused");
+  app.add_flag("--quiet", c.console.quiet, "Print only errors and shortfalls");
   add_choice(
       app, "--progress", c.console.progress,
       {ProgressStyle::automatic, ProgressStyle::bar, ProgressStyle::json, ProgressStyle::none},
-      "How far the work is, on stderr: a bar, or lines of JSON for each stage and percent; auto: a bar "
-      "on a terminal");
-  app.add_flag("--no-progress", c.console.no_progress, "The same as --progress none");
+      "Progress on stderr: a bar, or a line of JSON for each stage and percent; auto: a bar on a terminal");
+  app.add_flag("--no-progress", c.console.no_progress, "Same as --progress none");
   app.add_option("--log-file", c.console.log_file,
                  "Append the call, its stages, all messages and the exit status to this file, with times")
       ->type_name("FILE");
@@ -73,15 +73,14 @@ void add_common(CLI::App& app, CommandLine& c) {
 
 void add_time_limit(CLI::App& app, CommandLine& c) {
   add_number(app, "--time-limit", c.options.limits.seconds, positive,
-             "End after so many seconds with the best mesh so far (status 1), or, where there is none yet, "
-             "without one. Results then depend on the machine");
+             "End after this many seconds with the best mesh so far (status 1), or without a mesh if there "
+             "is none yet. Results then depend on the machine");
 }
 
 void add_report(CLI::App& app, CommandLine& c) {
-  app.add_option(
-         "--report", c.outputs.report,
-         "Write a page to look at, .html: the mesh in 3D with a cut, its histograms and figures, what "
-         "was found and what falls short; needs nothing but a browser")
+  app.add_option("--report", c.outputs.report,
+                 "Write a report page, .html: the mesh in 3D with a cut, histograms, statistics, findings "
+                 "and shortfalls; needs only a browser")
       ->type_name("FILE");
 }
 
@@ -102,7 +101,7 @@ void add_mesh_output(CLI::App& app, CommandLine& c) {
   for (const TetFormatInfo& format : written_tet_formats())
     formats += (formats.empty() ? "" : " ") + format.name;
   app.add_option("--output-format", c.outputs.format,
-                 "Format of the mesh instead of its extension's first, or of -o -: " + formats +
+                 "Format of the mesh instead of its extension's default, or of -o -: " + formats +
                      "; of --boundary -: an extension of a surface without its dot")
       ->type_name("NAME");
   add_whole_number(app, "--order", c.options.order, 1, 2,
@@ -113,10 +112,9 @@ void add_mesh_output(CLI::App& app, CommandLine& c) {
                  "output): " +
                      known_extensions(FileKind::surface, FileUse::write))
       ->type_name("FILE");
-  app.add_flag(
-      "--no-boundary", c.outputs.no_boundary,
-      "Leave the triangles of the boundary and of interfaces out of the mesh, for programs that take "
-      "every element for a tet");
+  app.add_flag("--no-boundary", c.outputs.no_boundary,
+               "Leave the triangles of the boundary and of interfaces out of the mesh, for programs that "
+               "treat every element as a tet");
   add_report(app, c);
 }
 
@@ -140,7 +138,7 @@ void add_labels(CLI::App& app, CommandLine& c) {
   app.add_option_function<std::string>(
          "--outside-label",
          [&c](const std::string& text) { c.options.labels.outside = parse_label("--outside-label", text); },
-         "Label of a segmented volume that means outside")
+         "Label of a segmented volume that means the outside")
       ->type_name("LABEL")
       ->default_str("0");
   add_whole_number(app, "--min-voxels", c.options.labels.min_voxels, 0, max_min_voxels,
@@ -160,8 +158,8 @@ void add_material_options(CLI::App& app, CommandLine& c) {
       ->type_name("NAME=FILE")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_flag("--split-solids", c.options.bodies.split_solids,
-               "Each solid, group or label of a surface's triangles is a material by its name, instead of a "
-               "patch of its boundary; later ones carve earlier ones");
+               "Each solid, group or label of a surface's triangles becomes a material of that name, instead "
+               "of a patch of its boundary; later ones carve earlier ones");
   app.add_option_function<std::vector<std::string>>(
          "--layer",
          [&c](const std::vector<std::string>& all) {
@@ -170,8 +168,8 @@ void add_material_options(CLI::App& app, CommandLine& c) {
              c.options.bodies.layers.push_back({layer.name, parse_number("--layer", layer.value, positive)});
            }
          },
-         "A layer under the first surface, a material of this thickness in input units; repeatable, the "
-         "outermost one first")
+         "A layer under the first surface, a material of this thickness in input units; repeatable, "
+         "outermost first")
       ->expected(1)
       ->type_name("NAME=THICKNESS")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -185,17 +183,17 @@ void add_material_options(CLI::App& app, CommandLine& c) {
            const auto rule = nested_rules.find(text);
            if (rule == nested_rules.end())
              throw CLI::ValidationError("--nested",
-                                        "'" + text + "' is none of auto, cavity, solid, material");
+                                        "'" + text + "' is not one of auto, cavity, solid, material");
            c.options.bodies.nested = rule->second;
          },
-         "What closed parts inside others are: cavity, solid, material (a separate one), or auto (cavities "
-         "if wound the other way round, else solid)")
+         "Treat closed parts inside others as: cavity, solid, material (a separate one), or auto (cavities "
+         "if wound the opposite way, else solid)")
       ->type_name("RULE")
       ->default_str("auto");
 }
 
 void add_strict(CLI::App& app, CommandLine& c) {
-  app.add_flag("--strict", c.options.acceptance.strict, "Status 1 where there is anything to note");
+  app.add_flag("--strict", c.options.acceptance.strict, "Status 1 if there is any note");
 }
 
 void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) {
@@ -224,12 +222,12 @@ void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) 
   app.add_flag("--keep-outside", c.options.cells.keep_outside,
                "Mesh the outside too, up to a box, as the material 'outside' with tag 0");
   app.add_flag("--accept-changes", c.options.acceptance.accept_changes,
-               "Where the mesh has not the volume, components, handles or cavities of the surfaces: a note "
+               "If the volume, components, handles or cavities differ from those of the surfaces: a note "
                "instead of status 1");
   add_strict(app, c);
-  app.add_option(
-         "--write-sdf", c.outputs.distances,
-         "Write the meshed signed distances to this .vdb file, thin walls as thick as cells show them")
+  app.add_option("--write-sdf", c.outputs.distances,
+                 "Write the meshed signed distances to this .vdb file, with thin walls as thick as the cells "
+                 "represent them")
       ->type_name("FILE");
 }
 
@@ -246,15 +244,14 @@ void add_shaping(CLI::App& app, CommandLine& c, const char* iterations) {
 }
 
 void add_tolerance(CLI::App& app, CommandLine& c) {
-  add_length(
-      app, "--tolerance", c.options.target.tolerance,
-      "How far any point of the mesh's surface and of the input's may be from the other, input units or "
-      "percent of the diagonal; status 1 unless that is proven of the result");
+  add_length(app, "--tolerance", c.options.target.tolerance,
+             "Max distance of any point of the mesh's surface from the input's and vice versa, input units "
+             "or percent of the diagonal; status 1 unless proven for the result");
 }
 
 void add_simplifying(CLI::App& app, CommandLine& c) {
   add_whole_number(app, "--target-tets", c.options.target.tets, 1, max_target_tets,
-                   "Number of tets to reach; with --tolerance it may be left out: as few as hold it. With "
+                   "Target number of tets; without it --tolerance gives as few as it allows. With "
                    "--size-field the sizes decide");
   add_tolerance(app, c);
   app.add_option_function<std::string>(
@@ -262,8 +259,7 @@ void add_simplifying(CLI::App& app, CommandLine& c) {
          [&c](const std::string& file) {
            if (!file.empty()) c.options.sizes.field = SizeFieldInput{file};
          },
-         "Edge lengths wanted, input units: the point field of a tet or surface mesh, or a float grid "
-         "(.vdb)")
+         "Target edge lengths, input units: the point field of a tet or surface mesh, or a float grid (.vdb)")
       ->type_name("FILE");
   add_length(app, "--max-edge", c.options.sizes.max_edge,
              "Max length of edges, input units or percent of the diagonal; longer ones are split");
@@ -271,8 +267,7 @@ void add_simplifying(CLI::App& app, CommandLine& c) {
              "Min length of edges, input units or percent of the diagonal; shorter ones are collapsed where "
              "surfaces and shapes allow");
   add_number(app, "--grading", c.options.sizes.grading, positive,
-             "How much the edge lengths of --size-field may grow from one place to another, over their "
-             "distance; where it says more they are made smaller")
+             "Max growth of the edge lengths of --size-field per unit distance; larger growth is reduced")
       ->default_str(short_text(default_grading));
   add_shaping(app, c, "Max number of block iterations, 1 to 10000");
   add_choice(app, "--schedule", c.options.schedule.kind, {Schedule::tuned, Schedule::paper},
@@ -295,14 +290,14 @@ void add_material_field(CLI::App& app, CommandLine& c) {
 /// Adds --input-format, for commands that can read standard input.
 void add_input_format(CLI::App& app, CommandLine& c) {
   app.add_option("--input-format", c.input_format,
-                 "Format of standard input, which the input - is: " + streamed_extensions())
+                 "Format of standard input (input -): " + streamed_extensions())
       ->type_name("NAME");
 }
 
 std::string scans() {
   return "Surfaces (" + known_extensions(FileKind::surface) +
-         ") and level sets (.vdb), each a material, of which later ones carve earlier ones; or one segmented "
-         "volume (" +
+         ") and level sets (.vdb), each a material; later ones carve earlier ones; or one segmented volume "
+         "(" +
          known_extensions(FileKind::volume) + ", .vdb of whole numbers)";
 }
 std::string meshes() { return "Tet mesh: " + known_extensions(FileKind::tet_mesh); }
@@ -331,7 +326,7 @@ void add_mesh(CLI::App& app, CommandLine& c) {
   app.add_option("INPUT", c.inputs, scans());
   add_input_format(app, c);
   add_mesh_output(app, c);
-  add_meshing(app, c, "128, or with --tolerance what that needs; for segmented volumes one cell to a voxel");
+  add_meshing(app, c, "128, or with --tolerance what that needs; for segmented volumes one cell per voxel");
   add_tolerance(app, c);
   add_labels(app, c);
   add_stats(app, c);
@@ -365,7 +360,7 @@ void add_improve(CLI::App& app, CommandLine& c) {
       "that stay below it are reported")
       ->default_str("0");
   app.add_flag("--free-count", c.options.shapes.free_count,
-               "Let the number of tets become what good shapes need, instead of keeping it within 5 %");
+               "Let the number of tets change as good shapes need, instead of keeping it within 5 %");
   add_shaping(app, c, "Max number of rounds, 1 to 10000");
   add_fix_boundary(app, c);
   add_feature_angle(app, c.options.feature_angle);
@@ -382,11 +377,10 @@ void add_check(CLI::App& app, CommandLine& c) {
   add_input_format(app, c);
   app.add_option("--before", c.check.before, "Another mesh, whose topology MESH must have")
       ->type_name("FILE");
-  app.add_option(
-         "--surface", c.check.surfaces,
-         "Surfaces (as prepare reads them) that MESH is compared with, whatever it was made from: the "
-         "largest distances both ways, proven, and creases; of one closed surface also volume and "
-         "topology. With several, interfaces between materials count, too")
+  app.add_option("--surface", c.check.surfaces,
+                 "Surfaces (as prepare reads them) to compare MESH with, whatever it was made from: proven "
+                 "largest distances both ways, and creases; for one closed surface also volume and topology. "
+                 "With several, interfaces between materials count, too")
       ->type_name("FILE");
   add_length(app, "--tolerance", c.options.target.tolerance,
              "Status 1 unless MESH and the surfaces are proven to be within this of each other everywhere, "
@@ -404,17 +398,16 @@ void add_batch(CLI::App& app, CommandLine& c) {
                  R"({"id": "a", "args": ["prepare", "a.ply", "-o", "a.vtu", "--target-tets", "10000"]})")
       ->required()
       ->expected(1);
-  app.add_option(
-         "--results", c.batch.results,
-         "File that gets a line of JSON for each job that ended: id, args, status, seconds, messages, "
-         "stats. Jobs that it has are not done again, unless they ended with status 5, 70 or 130 "
-         "(default: the name of JOBS with .results.jsonl)")
+  app.add_option("--results", c.batch.results,
+                 "File that receives a line of JSON for each finished job: id, args, status, seconds, "
+                 "messages, stats. Jobs in it are not run again, unless they ended with status 5, 70 or 130 "
+                 "(default: the name of JOBS with .results.jsonl)")
       ->type_name("FILE");
   add_whole_number(
       app, "--jobs", c.batch.jobs, 1, max_jobs,
       "Max number of jobs at the same time, 1 to 64; they share the threads (default: one for each "
       "thread)");
-  app.add_flag("--retry", c.batch.retry, "Do all jobs again that did not end with status 0");
+  app.add_flag("--retry", c.batch.retry, "Run all jobs again that did not end with status 0");
   add_common(app, c);
 }
 

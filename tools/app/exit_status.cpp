@@ -49,7 +49,7 @@ DiagnosticCode error_code(ExitStatus status) {
 
 std::string failure_message(const std::exception& error) {
   if (dynamic_cast<const std::bad_alloc*>(&error))
-    return "not enough memory; free some, or ask for less (of surfaces: a smaller --resolution)";
+    return "not enough memory; free some, or ask for less (for surfaces: a smaller --resolution)";
   if (no_thread(error))
     return std::string(error.what()) + "; out of memory or threads: free some, or give fewer --threads";
   return std::string(error.what()) + (dynamic_cast<const std::logic_error*>(&error) ? report_this : "");

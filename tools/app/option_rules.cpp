@@ -21,7 +21,7 @@ void check_no_stream(const CommandLine& out) {
   const auto check = [](const char* option, const std::string& file) {
     if (file == "-")
       throw UsageError(std::string(option) +
-                       " is no stream; give it a file (- is for the input, -o, --boundary and --stats)");
+                       " cannot be -; give a file (- is for the input, -o, --boundary and --stats)");
   };
   check("--write-sdf", out.outputs.distances);
   check("--report", out.outputs.report);
@@ -40,7 +40,7 @@ void complete_input_stream(CommandLine& out) {
   const auto stream = std::find(out.inputs.begin(), out.inputs.end(), "-");
   const bool given = stream != out.inputs.end();
   if (given && std::count(out.inputs.begin(), out.inputs.end(), "-") > 1)
-    throw UsageError("standard input (-) is one input; give the others as files");
+    throw UsageError("standard input (-) can be given once; give the other inputs as files");
   if (given && out.input_format.empty())
     throw UsageError("standard input (-) has no extension; give --input-format, one of " +
                      streamed_extensions());
@@ -54,7 +54,7 @@ void complete_input_stream(CommandLine& out) {
     if (!out.input_format.starts_with('.')) out.input_format.insert(0, ".");
     if (!streams(out.input_format))
       throw UsageError("--input-format " + out.input_format.substr(1) +
-                       " is no format of a stream; known are " + streamed_extensions());
+                       " is not a stream format; supported: " + streamed_extensions());
   }
 }
 

@@ -48,17 +48,17 @@ std::string feature_line(const FeatureReport& f) {
   std::string line = "features of '" + f.name + "': ";
   switch (f.found.verdict) {
     case Verdict::off:
-      line += "not looked for";
+      line += "not searched for";
       break;
     case Verdict::smooth:
-      line += f.found.any() ? "no edge turns far enough within the named patches"
-                            : "none; no edge turns far enough";
+      line += f.found.any() ? "no edge is sharp enough within the named patches"
+                            : "none; no edge is sharp enough";
       break;
     case Verdict::scan:
       line += "none; its edges look like those of a scan (" + loose() + ")";
       break;
     case Verdict::intersecting:
-      line += "not looked for; the surface intersects itself";
+      line += "not searched for; the surface intersects itself";
       break;
     case Verdict::meeting:
       line += "none kept; the surface meets another one, or gaps of it are closed";
@@ -123,27 +123,26 @@ void print_report(const CommandLine& line, const PrepareReport& run) {
     const DeviationReport& d = *run.deviation;
     std::printf(
         "distances: at most %.4g from the mesh to the surface, %.4g from the surface to the mesh; %.4g "
-        "asked\n",
+        "requested\n",
         d.from_mesh.upper, d.from_surface.upper, run.tolerance);
     if (d.apart_area > 0)
       std::printf(
           "compared with the dense mesh, as it is far from the surface (caps, layers, a box): area %.4g\n",
           d.apart_area);
     if (d.hidden_area > 0)
-      std::printf("not compared, as the mesh does not show it (inner walls): area %.4g of the surface\n",
+      std::printf("not compared, as the mesh does not contain it (inner walls): area %.4g of the surface\n",
                   d.hidden_area);
   }
   if (run.edge_lengths && run.edge_lengths->with_target_length > 0)
-    std::printf(
-        "edge lengths: %.1f %% within %.3g times the wanted ones (%s), median %.2f times; %.4g to %.4g\n",
-        100 * run.edge_lengths->within_share(), edge_length_factor,
-        in_quotes(run.sizes.source->field()).c_str(), run.edge_lengths->median, run.edge_lengths->shortest,
-        run.edge_lengths->longest);
+    std::printf("edge lengths: %.1f %% within %.3g times the target (%s), median %.2f times; %.4g to %.4g\n",
+                100 * run.edge_lengths->within_share(), edge_length_factor,
+                in_quotes(run.sizes.source->field()).c_str(), run.edge_lengths->median,
+                run.edge_lengths->shortest, run.edge_lengths->longest);
   else if (run.edge_lengths)
     std::printf("edge lengths: %.4g to %.4g\n", run.edge_lengths->shortest, run.edge_lengths->longest);
   if (run.second_order)
     std::printf(
-        "second order: of %zu edges on surfaces %zu follow them, %zu part of the way, %zu are straight\n",
+        "second order: of %zu edges on surfaces %zu follow the surface, %zu partly, %zu are straight\n",
         run.second_order->edges, run.second_order->on_surface, run.second_order->part_way,
         run.second_order->straight);
   if (run.mesher)

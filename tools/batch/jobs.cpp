@@ -33,7 +33,7 @@ Job parse_job(const std::string& file, std::size_t line, const std::string& text
   Job job;
   try {
     const nlohmann::json json = nlohmann::json::parse(text);
-    if (!json.is_object()) refuse("it is no JSON object");
+    if (!json.is_object()) refuse("it is not a JSON object");
     for (const auto& [key, value] : json.items())
       if (key != "id" && key != "args") refuse("unknown key '" + key + "'");
     if (!json.contains("args") || !json["args"].is_array() || json["args"].empty())
@@ -59,7 +59,7 @@ Job parse_job(const std::string& file, std::size_t line, const std::string& text
   } catch (const nlohmann::json::exception& e) {
     const std::string what = e.what();  // "[json.exception...] parse error at line 1, column 7: ..."
     const std::size_t from = what.find("column");
-    refuse("it is no JSON (" + (from == std::string::npos ? what : what.substr(from)) + ")");
+    refuse("it is not JSON (" + (from == std::string::npos ? what : what.substr(from)) + ")");
   }
   return job;
 }
@@ -81,7 +81,7 @@ std::vector<Job> read_jobs(const std::string& file) {
                        "the id '" + jobs.back().id + "' is that of line " + std::to_string(first->second) +
                            ", too; give each job its own");
   }
-  if (jobs.empty()) throw InputError(file, 0, "no job in it; give each a line");
+  if (jobs.empty()) throw InputError(file, 0, "it has no jobs; give one per line");
   return jobs;
 }
 

@@ -39,7 +39,7 @@ ResultsFile::ResultsFile(const std::string& path) : path_(path) {
   sync_folder_of(path);
   try {
     if (flock(file_, LOCK_EX | LOCK_NB) != 0)
-      fail(path, errno == EWOULDBLOCK ? "another batch is writing it; give this one --results of its own"
+      fail(path, errno == EWOULDBLOCK ? "another batch is writing it; give this one its own --results"
                                       : std::strerror(errno));
     reload();
   } catch (...) {
@@ -61,7 +61,7 @@ void ResultsFile::reload() {
       // A kill may have left the beginning of a line.
       if (end < text.size() || !is_beginning_of_line(line))
         throw InputError(path_, number,
-                         "it is no result of a batch; give --results another file, or remove this one");
+                         "it is not a batch result; give --results another file, or remove this one");
       if (ftruncate(file_, static_cast<off_t>(begin)) != 0) fail(path_, std::strerror(errno));
     } else if (end == text.size()) {
       write_whole("\n");

@@ -48,20 +48,21 @@ CommandLine parse(const Job& job) {
   for (std::string& word : words) argv.push_back(word.data());
   for (std::size_t i = 1; i < words.size(); ++i) {
     if (words[i] == "--help" || words[i] == "-h" || words[i] == "--version")
-      throw UsageError(words[i] + " is no job; leave the line out");
+      throw UsageError(words[i] + " is not a job; leave the line out");
     if (words[i] == "-" && words[i - 1] != "--stats")
-      throw UsageError("a job has no standard input and output; give it files");
+      throw UsageError("a job cannot use standard input or output; give it files");
   }
   CommandLine line;
   (void)parse_command_line(static_cast<int>(argv.size()), argv.data(), line);
   if (line.command == Command::batch || line.command == Command::sample)
     throw UsageError(std::string(name_of(line.command)) +
-                     " is no job; jobs are prepare, mesh, simplify, improve and check");
-  if (!line.console.log_file.empty()) throw UsageError("--log-file is of the whole batch; give it there");
+                     " is not a job; jobs are prepare, mesh, simplify, improve and check");
+  if (!line.console.log_file.empty())
+    throw UsageError("--log-file is for the whole batch; give it to batch itself");
   if (!line.input_format.empty() || line.outputs.mesh == "-" || line.outputs.boundary == "-")
-    throw UsageError("a job has no standard input and output; give it files");
+    throw UsageError("a job cannot use standard input or output; give it files");
   if (line.outputs.stats == "-")
-    throw UsageError("--stats - is of a single run; the results have the statistics");
+    throw UsageError("--stats - is for single runs; the results have the statistics");
   return line;
 }
 
@@ -97,7 +98,8 @@ void check_jobs_are_independent(const CommandLine& batch, const std::vector<Job>
     if (writer == written.end() || writer->second == id) continue;
     std::string message = "job '";
     message.append(id).append("' reads ").append(path).append(", which job '").append(writer->second);
-    throw InputError(file, 0, message + "' writes; jobs have no order: give it a batch of its own");
+    throw InputError(file, 0,
+                     message + "' writes; jobs run in no particular order: put it into a separate batch");
   }
 }
 
@@ -178,10 +180,10 @@ std::vector<const Job*> unfinished_jobs(const std::vector<Job>& jobs, const Resu
   return left;
 }
 
-/// Text such as "died of signal 11 (Segmentation fault)".
+/// Text such as "was killed by signal 11 (Segmentation fault)".
 std::string death_text(const ProcessEnd& end) {
   if (end.signal == 0) return "ended with status " + std::to_string(end.status);
-  return "died of signal " + std::to_string(end.signal) + " (" + strsignal(end.signal) + ")";
+  return "was killed by signal " + std::to_string(end.signal) + " (" + strsignal(end.signal) + ")";
 }
 
 /// Result of a job whose process died.
@@ -191,12 +193,13 @@ Ended ended_by(const ProcessEnd& end, double seconds) {
   const std::string what = "its process " + death_text(end);
   if (end.signal == 0) {
     ended.status = static_cast<ExitStatus>(end.status);
-    ended.messages = {what + ", and has said why on stderr"};
+    ended.messages = {what + ", with the reason on stderr"};
   } else if (end.signal == SIGKILL || end.signal == SIGXCPU) {
     ended.status = ExitStatus::output_failed;
     ended.messages = {what +
-                      (end.signal == SIGKILL ? ", as where memory runs out; free some, give fewer --jobs, or "
-                                             : ", its limit of processor time; raise that, or ") +
+                      (end.signal == SIGKILL
+                           ? ", as happens when memory runs out; free some, give fewer --jobs, or "
+                           : ", its CPU time limit; raise it, or ") +
                       "ask for larger cells"};
   } else {
     ended.status = ExitStatus::internal_error;
@@ -334,7 +337,7 @@ void run_batch(CommandRun& run) {
   const std::vector<Job> jobs = read_jobs(line.inputs.front());
   check_jobs_are_independent(line, jobs);
   ResultsFile results(results_file_of(line));
-  say_when_interrupted("tetwright: interrupted; the same call goes on with the jobs that are left\n");
+  say_when_interrupted("tetwright: interrupted; repeat the call to run the remaining jobs\n");
   const std::vector<const Job*> left = unfinished_jobs(jobs, results, line.batch.retry);
   JobStates states(left.size());
   Recorder recorder(left, states, results, run);
@@ -365,7 +368,7 @@ void run_batch(CommandRun& run) {
       for (const std::size_t job : jobs_then) remove_temporary_files_of(*left[job], end.id);
     if (running.empty() && recorded.empty())
       throw OutputError("the process of the batch " + death_text(end) +
-                        " between jobs; the same call goes on with those that are left");
+                        " between jobs; repeat the call to run the remaining jobs");
     std::vector<std::size_t> next;
     if (running.size() == 1 && recorded.empty()) {
       recorder.record(running[0], ended_by(end, states.seconds(running[0])));

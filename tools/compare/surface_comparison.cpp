@@ -53,8 +53,8 @@ TetMesh compared_tets(const TetMesh& mesh, SurfaceComparison& c) {
   c.outside_tets = mesh.tets.size() - part.tets.size();
   if (part.tets.empty())
     throw UsageError(
-        "all tets of the mesh are of the material 'outside', so that it has no part to compare with "
-        "surfaces; give that another name, or leave out --surface");
+        "all tets of the mesh have the material 'outside', so it has no part to compare with surfaces; "
+        "rename that material, or leave out --surface");
   c.inverted = std::all_of(part.tets.begin(), part.tets.end(), [&](const Tet& t) {
     return orient3d(part.points[t[0]], part.points[t[1]], part.points[t[2]], part.points[t[3]]) < 0;
   });
@@ -283,10 +283,11 @@ SurfaceComparison compare_with_surfaces(const TetMesh& mesh, const std::vector<T
 std::vector<std::string> comparison_lines(const SurfaceComparison& c) {
   std::vector<std::string> lines;
   if (c.outside_tets > 0)
-    lines.push_back("left out of what is compared with the surface: the " + std::to_string(c.outside_tets) +
+    lines.push_back("not compared with the surface: the " + std::to_string(c.outside_tets) +
                     " tets of the material 'outside'");
   if (c.inverted)
-    lines.emplace_back("all tets are inverted; compared with the surface as if they were turned");
+    lines.emplace_back(
+        "all tets are inverted; compared with the surface as if their orientation were reversed");
   if (c.open_edges > 0) lines.push_back(open_line(c));
   lines.push_back(deviation_line("distance of the mesh from the surface", c.from_mesh, c.diagonal));
   lines.push_back(deviation_line("distance of the surface from the mesh", c.from_surfaces, c.diagonal));
@@ -298,10 +299,10 @@ std::vector<std::string> comparison_lines(const SurfaceComparison& c) {
                     (c.solid->same() ? "same components, handles and cavities" : c.solid->difference) +
                     (c.solid->place ? ", at " + place_text(*c.solid->place) : "") +
                     (c.intersecting && !c.solid->same()
-                         ? "; the surface intersects itself, and its parts count as if they were apart"
+                         ? "; the surface intersects itself, and its parts count as if they were separate"
                          : ""));
   } else {
-    lines.emplace_back("volume and topology: not compared; that takes one closed surface");
+    lines.emplace_back("volume and topology: not compared; that requires one closed surface");
   }
   if (c.creases_left_out)
     lines.emplace_back("creases of the surface: not compared; the surface intersects itself");

@@ -87,7 +87,7 @@ def options_of(help_text):
 def range_of(program, command, option, kind):
     """What the program says that a value must be, by giving it none of that kind."""
     answer = program.run(command, option, "x=?" if "=" in kind else "?").stderr
-    found = re.search(r"'(?:x=)?\?' is (?:not (?:an? )?|none of |neither an? )(.*?)(?: \(tetwright|$)", answer, re.M)
+    found = re.search(r"'(?:x=)?\?' is (?:not one of |not (?:an? )?|neither an? )(.*?)(?: \(tetwright|$)", answer, re.M)
     if not found:
         return ""
     text = re.sub(r"^(?:whole )?number (?:from |of )?|^(?:solid )?angle from |^length (?=above)", "", found[1])

@@ -12,7 +12,7 @@ const char* reason_to_accept(const Diagnostic& d, const AcceptanceOptions& accep
   const Yields yields = kind_of(d.code).yields;
   if (yields == Yields::never) return nullptr;
   if (acceptance.accept_changes) return "accepted";
-  return yields == Yields::to_acceptance_or_purpose && on_purpose ? "as --min-gap and --min-thickness ask"
+  return yields == Yields::to_acceptance_or_purpose && on_purpose ? "as --min-gap and --min-thickness request"
                                                                   : nullptr;
 }
 

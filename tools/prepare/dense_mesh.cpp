@@ -61,8 +61,7 @@ DenseMesh mesh_input(const MesherInput& surfaces, PrepareRun& run) {
   if (cells.uniform && cells.max_refinement.value_or(0) > 0)
     throw UsageError("--uniform has cells of one size; leave out --max-refinement, or --uniform");
   if (!surfaces.layers.empty() && cells.min_thickness)
-    throw UsageError(
-        "--min-thickness leaves out walls of surfaces without layers; leave out --layer, or --min-thickness");
+    throw UsageError("--min-thickness does not work with layers; leave out --layer, or --min-thickness");
   const double diagonal = (surfaces.high - surfaces.low).norm();
   read_sizes(run, {surfaces.low, surfaces.high});
   for (const MesherInput::Body& body : surfaces.bodies) require_sizes_at(run, body.surface.points);
@@ -106,8 +105,8 @@ DenseMesh mesh_input(const LabelInput& labels, PrepareRun& run) {
   read_sizes(run, box_of(labels));
   if (target.tolerance && run.task == Task::mesh)
     throw UsageError(
-        "--tolerance of 'mesh' is for surfaces: the dense mesh of a volume is what 'prepare --tolerance' "
-        "keeps near");
+        "--tolerance of 'mesh' is for surfaces; for a volume use 'prepare --tolerance', which bounds the "
+        "distance from the dense mesh");
   DenseMesh dense = mesh_labels(labels, options, &run.progress);
   if (target.tolerance) run.report.tolerance = tolerance_of(*target.tolerance, diagonal_of(dense.mesh));
   return dense;

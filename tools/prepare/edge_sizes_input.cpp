@@ -32,7 +32,7 @@ void require_sizes_at(const PrepareRun& run, const std::vector<Vec3>& places) {
   if (const auto place = sizes.target_length->first_beyond(*sizes.source, places))
     throw InputError(run.options.sizes.field->name, 0,
                      "the sizes end within the body: there are none at " + place_text(*place) +
-                         "; give a field that reaches all of " + run.report.inputs.front());
+                         "; give a field that covers all of " + run.report.inputs.front());
 }
 
 }  // namespace tetwright

@@ -30,7 +30,7 @@ void report_tets_below(const TetMesh& mesh, PrepareRun& run) {
                                     .file = run.report.inputs.front(),
                                     .what = what,
                                     .count = left,
-                                    .done = "held back by: " + held,
+                                    .done = "limited by: " + held,
                                     .asked = bound,
                                     .reached = statistics.min_solid_angle,
                                     .limited_by = held});

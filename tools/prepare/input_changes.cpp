@@ -106,7 +106,7 @@ void find_changed_solids(const TetMesh& mesh, PrepareRun& run) {
                                 .what = "not the solid of the input: " + text,
                                 .remedy = std::string("raise ") +
                                           (dense_was_same ? "--target-tets" : "--resolution") +
-                                          ", or take it as it is with --accept-changes",
+                                          ", or accept it with --accept-changes",
                                 .asked = static_cast<double>(all),
                                 .reached = static_cast<double>(same),
                                 .limited_by = dense_was_same ? "the number of tets"
@@ -145,7 +145,7 @@ void find_thin_walls(PrepareRun& run) {
     std::snprintf(factor, sizeof factor, "walls are up to %.3g times too thick (%.3g, not %.3g) at ",
                   (t.thickness + 2 * t.offset) / t.thickness, t.thickness + 2 * t.offset, t.thickness);
     text += (text.empty() ? "" : "; ") + std::string(factor) + std::to_string(t.points) +
-            " points of the boundary, most at " + place_text(t.place);
+            " points of the boundary, worst at " + place_text(t.place);
     places.push_back(t.place);
   }
   if (text.empty()) return;
@@ -155,7 +155,7 @@ void find_thin_walls(PrepareRun& run) {
                                 .what = "too thin for cells: " + text,
                                 .remedy = std::string("raise --resolution") +
                                           (finer ? " or --max-refinement" : "") +
-                                          ", or take it as it is with --accept-changes",
+                                          ", or accept it with --accept-changes",
                                 .asked = 0,
                                 .reached = static_cast<double>(report.mesher->closed_gaps.size() + t.points),
                                 .limited_by = "the size of the cells",
@@ -183,11 +183,11 @@ void find_changed_creases(const TetMesh& mesh, PrepareRun& run) {
       {.code = DiagnosticCode::creases_changed,
        .file = report.inputs.front(),
        .what = text,
-       .remedy = std::string(run.task == Task::improve ? ""
-                             : report.simplify         ? "raise --target-tets, or "
-                                                       : "raise --resolution, or ") +
-                 (of_tets ? "leave sharp edges alone with --feature-angle off"
-                          : "take it as it is with --accept-changes"),
+       .remedy =
+           std::string(run.task == Task::improve ? ""
+                       : report.simplify         ? "raise --target-tets, or "
+                                                 : "raise --resolution, or ") +
+           (of_tets ? "ignore sharp edges with --feature-angle off" : "accept it with --accept-changes"),
        .asked = 0,
        .reached = c.max_distance,
        .limited_by = report.simplify ? "the number of tets" : "the size of the cells",
@@ -213,7 +213,7 @@ void find_lost_patches(const TetMesh& mesh, PrepareRun& run) {
       {.code = DiagnosticCode::patches_lost,
        .file = report.inputs.front(),
        .what = "lost " + std::to_string(lost) + " of " + std::to_string(all) + " named patches: " + text,
-       .remedy = "they are smaller than cells, within the solid, or on triangles that are there twice: raise "
+       .remedy = "they are smaller than cells, within the solid, or on duplicate triangles: raise "
                  "--resolution, or leave them out",
        .asked = static_cast<double>(all),
        .reached = static_cast<double>(all - lost),
@@ -258,9 +258,9 @@ void find_thin_part(const ThinPartReport& thin, PrepareReport& report) {
   report.diagnostics.push_back(
       {.code = change == Change::possible ? DiagnosticCode::thin_parts : DiagnosticCode::thin_parts_uncertain,
        .what = (thin.name.empty() ? "a gap" : "'" + thin.name + "'") + " is thinner than " +
-               (thin.refined ? "the smallest cells can hold" : "two cells") + " at " +
-               std::to_string(thin.places) + (thin.places == 1 ? " place, at " : " places, the first at ") +
-               place_text(thin.first) +
+               (thin.refined ? "the smallest cells can represent" : "two cells") + " at " +
+               std::to_string(thin.places) +
+               (thin.places == 1 ? " location, at " : " locations, the first at ") + place_text(thin.first) +
                (change == Change::none_by_estimate
                     ? ": nothing is known to be torn or joined there"
                     : ": parts may be torn or joined there; a higher resolution keeps them"),

@@ -112,7 +112,7 @@ Prepared carry_out(std::vector<Input> inputs, PrepareRun& run) {
     throw OutOfTime("out of time: after the " + short_number(run.options.limits.seconds.value_or(0)) +
                     " s of --time-limit there was no mesh yet (in stage '" + run.progress.stage() +
                     "'), and nothing was written; give more time" +
-                    (of_scans ? ", or larger cells by --resolution" : ""));
+                    (of_scans ? ", or larger cells by a lower --resolution" : ""));
   }
   // Comparing and returning the mesh has no deadline.
   run.progress.set_deadline(Progress::no_deadline);
@@ -154,12 +154,12 @@ void check_options(Task task, const PrepareOptions& options) {
       throw UsageError("--grading is for the edge lengths of a size field; give --size-field FILE");
     if (options.schedule.kind == Schedule::paper && (sizes.field || sizes.min_edge || sizes.max_edge))
       throw UsageError(
-          "--schedule paper bounds no edges; leave out --size-field, --min-edge and --max-edge, or "
+          "--schedule paper does not bound edges; leave out --size-field, --min-edge and --max-edge, or "
           "--schedule");
   }
   if (target.tolerance && options.schedule.kind == Schedule::paper)
-    throw UsageError("--schedule paper bounds no distances; leave out --tolerance, or --schedule");
-  if (options.order != 1 && options.order != 2) throw UsageError("the order of elements is 1 or 2");
+    throw UsageError("--schedule paper does not bound distances; leave out --tolerance, or --schedule");
+  if (options.order != 1 && options.order != 2) throw UsageError("the order of elements must be 1 or 2");
   if (options.cells.resolution && options.cells.size)
     throw UsageError("give --resolution or --voxel-size, not both");
 }

@@ -57,7 +57,7 @@ void report_touching_points(const std::string& file, PrepareReport& report) {
                                   .file = file,
                                   .what = "points where parts touch without a common face",
                                   .count = report.simplify->touching_points,
-                                  .done = "kept as they are with all their tets"});
+                                  .done = "kept unchanged with all their tets"});
 }
 
 std::string rules_behind_count(const PrepareRun& run, double asked, double reached) {
@@ -65,20 +65,20 @@ std::string rules_behind_count(const PrepareRun& run, double asked, double reach
   const PrepareReport& report = run.report;
   if (reached > asked && report.simplify->out_of_time) return "--time-limit";
   if (run.task == Task::improve)
-    return "nothing: shapes were worth " + std::string(reached < asked ? "fewer" : "more") + " tets";
+    return "nothing: good shapes require " + std::string(reached < asked ? "fewer" : "more") + " tets";
   if (reached > asked && report.mesher && static_cast<double>(report.mesher->filling_tets) > asked)
-    return "walls so thin that fewer tets would be flat; ask for " +
+    return "walls so thin that fewer tets would be flat; request " +
            std::to_string(report.mesher->filling_tets) + " or more, or leave them out with --min-thickness";
   if (report.sizes.target_length) return "the sizes of --size-field, which decide the number of tets";
   if (reached > asked && std::isfinite(report.sizes.limits.max_edge))
     return "the lengths that --max-edge allows";
   if (reached < asked && report.sizes.limits.min_edge > 0) return "the lengths that --min-edge allows";
   if (reached > asked && report.tolerance > 0)
-    return std::to_string(report.result->tets) + " tets: the tolerance holds the rest back";
+    return std::to_string(report.result->tets) + " tets: the tolerance prevents fewer";
   if (reached > asked) return rules_limiting_count(*report.simplify, options.shapes.max_iterations);
   return static_cast<double>(report.dense->tets) < asked
              ? "the dense mesh, which has too few tets; raise --resolution"
-             : "nothing: the closing improvement took tets away";
+             : "nothing: the final improvement removed tets";
 }
 
 void find_count_and_shapes(PrepareRun& run) {
@@ -87,8 +87,8 @@ void find_count_and_shapes(PrepareRun& run) {
   const auto add = [&](DiagnosticCode code, const std::string& option, double asked, double reached,
                        const std::string& limited_by) {
     report.diagnostics.push_back({.code = code,
-                                  .what = "short of " + option + ": " + number(asked) + " was asked, " +
-                                          number(reached) + " reached; held back by: " + limited_by,
+                                  .what = "short of " + option + ": " + number(asked) + " requested, " +
+                                          number(reached) + " reached; limited by: " + limited_by,
                                   .asked = asked,
                                   .reached = reached,
                                   .limited_by = limited_by});
@@ -112,7 +112,7 @@ void find_limits(PrepareRun& run) {
   if ((report.simplify && report.simplify->out_of_time) || (report.mesher && report.mesher->out_of_time)) {
     const bool counted = run.task != Task::improve && report.simplify &&
                          report.result->tets > std::max<std::size_t>(1, options.target.tets.value_or(0));
-    const char* undone = !report.simplify ? "smaller cells where the tolerance asks for them"
+    const char* undone = !report.simplify ? "smaller cells where the tolerance requires them"
                          : counted        ? "the rest of simplifying and of improving shapes"
                                           : "the rest of improving shapes";
     const double limit = options.limits.seconds.value_or(0);
@@ -129,8 +129,8 @@ void find_limits(PrepareRun& run) {
                                   .what = "short of memory: cells of " + number(report.coarser->asked) +
                                           " would take about " +
                                           short_number(report.coarser->bytes / gigabyte) +
-                                          " GB, and cells of " + number(report.coarser->used) + " were taken",
-                                  .remedy = "free some, give a larger --memory-limit, or say --resolution",
+                                          " GB, so cells of " + number(report.coarser->used) + " were used",
+                                  .remedy = "free some, give a larger --memory-limit, or set --resolution",
                                   .asked = report.coarser->asked,
                                   .reached = report.coarser->used,
                                   .limited_by = "memory"});
@@ -143,9 +143,8 @@ void find_deviation(PrepareRun& run) {
   const DeviationReport& d = *report.deviation;
   if (report.lost_area() > 0)
     report.diagnostics.push_back({.code = DiagnosticCode::surface_not_shown,
-                                  .what = "short of --tolerance: the mesh shows nothing of an area of " +
-                                          short_number(report.lost_area()) +
-                                          " of the surface, all of which is its outside",
+                                  .what = "short of --tolerance: the mesh lacks an area of " +
+                                          short_number(report.lost_area()) + " of the outer surface",
                                   .remedy = "raise --resolution or --max-refinement",
                                   .asked = 0,
                                   .reached = report.lost_area(),
@@ -157,16 +156,16 @@ void find_deviation(PrepareRun& run) {
       (report.simplify && report.simplify->out_of_time) || (report.mesher && report.mesher->out_of_time);
   // The result for a volume is compared with the dense mesh's own surface.
   const char* limit = worst.lower <= report.tolerance && stopped
-                          ? "--time-limit, which ended measuring it: it may be held"
+                          ? "--time-limit, which ended the measurement: the tolerance may be met"
                       : report.mesher && !report.volume
                           ? "the dense mesh is that far there; give a larger --resolution, or a larger "
                             "tolerance"
                           : "the shapes of tets there; give a larger tolerance";
   report.diagnostics.push_back({.code = DiagnosticCode::tolerance_missed,
-                                .what = "short of --tolerance: " + number(report.tolerance) + " was asked, " +
+                                .what = "short of --tolerance: " + number(report.tolerance) + " requested, " +
                                         number(worst.upper) + " reached from the " +
                                         (mesh ? "mesh to the surface" : "surface to the mesh") + ", at " +
-                                        place_text(worst.place) + "; held back by: " + limit,
+                                        place_text(worst.place) + "; limited by: " + limit,
                                 .asked = report.tolerance,
                                 .reached = worst.upper,
                                 .limited_by = limit,
@@ -184,16 +183,15 @@ void find_edge_lengths(const TetMesh& mesh, PrepareRun& run) {
   const auto offend = [&](DiagnosticCode code, const char* option, double asked,
                           const EdgeLengthReport::Offender& worst, const char* way, const char* limit) {
     if (worst.count == 0) return;
-    report.diagnostics.push_back({.code = code,
-                                  .what = std::string("short of ") + option + ": " +
-                                          std::to_string(worst.count) + " of " + std::to_string(e.edges) +
-                                          " edges are " + way + ", by most " + number(worst.length) +
-                                          " instead of " + number(asked) + " at " + place_text(worst.place) +
-                                          "; held back by: " + limit,
-                                  .asked = asked,
-                                  .reached = worst.length,
-                                  .limited_by = limit,
-                                  .places = {worst.place}});
+    report.diagnostics.push_back(
+        {.code = code,
+         .what = std::string("short of ") + option + ": " + std::to_string(worst.count) + " of " +
+                 std::to_string(e.edges) + " edges are " + way + ", at worst " + number(worst.length) +
+                 " instead of " + number(asked) + " at " + place_text(worst.place) + "; limited by: " + limit,
+         .asked = asked,
+         .reached = worst.length,
+         .limited_by = limit,
+         .places = {worst.place}});
   };
   const char* held = report.simplify->out_of_time ? "--time-limit" : "surfaces, creases and shapes there";
   offend(DiagnosticCode::edges_too_long, "--max-edge", sizes.limits.max_edge, e.above_max, "longer", held);
@@ -201,8 +199,8 @@ void find_edge_lengths(const TetMesh& mesh, PrepareRun& run) {
   if (e.within_share() >= min_edges_within) return;
   char text[160];
   std::snprintf(text, sizeof text,
-                "short of --size-field: %.3g %% of the edges are within %.3g times the wanted length, not "
-                "%.3g %%; held back by: ",
+                "short of --size-field: %.3g %% of the edges are within %.3g times the target length, not "
+                "%.3g %%; limited by: ",
                 100 * e.within_share(), edge_length_factor, 100 * min_edges_within);
   report.diagnostics.push_back({.code = DiagnosticCode::sizes_missed,
                                 .what = text + std::string(held),
@@ -223,16 +221,16 @@ void report_bad_shapes(PrepareRun& run) {
   char what[100];
   std::snprintf(what, sizeof what, "tets below %.6g sr, %.3g %% of all, the smallest at %.3g sr",
                 options.shapes.bound(), result.below_percent, result.min_solid_angle);
-  const std::string narrow =
-      report.input_limited == 0
-          ? ""
-          : std::to_string(report.input_limited) + " of them in angles of the input too narrow for more; ";
+  const std::string narrow = report.input_limited == 0
+                                 ? ""
+                                 : std::to_string(report.input_limited) +
+                                       " of them in angles of the input too narrow for better ones; ";
   const std::string held = rules_limiting_shapes(*report.simplify);
   report.diagnostics.push_back({.code = DiagnosticCode::angles_below_bound,
                                 .file = report.inputs.front(),
                                 .what = what,
                                 .count = result.below_count,
-                                .done = narrow + "held back by: " + held,
+                                .done = narrow + "limited by: " + held,
                                 .asked = options.shapes.bound(),
                                 .reached = result.min_solid_angle,
                                 .limited_by = held});

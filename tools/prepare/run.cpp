@@ -62,7 +62,7 @@ void report_dropped(const std::vector<Dropped>& dropped, const std::string& file
            .file = file,
            .what = d.what,
            .count = d.count,
-           .done = d.restored ? "found again from the materials" : "dropped"});
+           .done = d.restored ? "restored from the materials" : "dropped"});
 }
 
 }  // namespace tetwright

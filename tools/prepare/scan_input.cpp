@@ -33,7 +33,7 @@ void check_input_kinds(const std::vector<Input>& inputs, Task task) {
     if (kind == FileKind::tet_mesh)
       throw UsageError(
           std::string(file)
-              .append(" is a tet mesh, which 'tetwright simplify' and 'tetwright improve' take; ")
+              .append(" is a tet mesh, which 'tetwright simplify' and 'tetwright improve' read; ")
               .append(read));
     const std::string extension = std::filesystem::path(file).extension().string();
     const std::string what = extension.empty() ? "no extension" : "unknown extension '" + extension + "'";
@@ -192,7 +192,7 @@ std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs, 
   }
   if (split_solids_asked && split.empty())
     throw InputError(inputs.front().name, 0,
-                     "--split-solids finds no solids, groups or labels that tell its parts apart; leave the "
+                     "--split-solids finds no solids, groups or labels that distinguish its parts; leave the "
                      "option out (it does not split what --material names)");
   name_solids(std::move(split), run.options.bodies.layers, surfaces, report.diagnostics);
   return surfaces;

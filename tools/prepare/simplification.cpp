@@ -29,10 +29,9 @@ double tolerance_of(const Length& asked, double diagonal) {
   const double smallest = min_tolerance_share * diagonal;
   if (value < smallest) {
     char text[160];
-    std::snprintf(
-        text, sizeof text,
-        "--tolerance %.6g is below what coordinates and distances are worth here; give %.6g or more", value,
-        smallest);
+    std::snprintf(text, sizeof text,
+                  "--tolerance %.6g is below the accuracy of coordinates and distances; give %.6g or more",
+                  value, smallest);
     throw UsageError(text);
   }
   return value;

@@ -17,7 +17,7 @@ void check_input_kind(const Input& input, Task task) {
   const FileKind kind = input.kind();
   if (kind == FileKind::surface || kind == FileKind::volume || is_vdb(file))
     throw UsageError(file + " is a " + (kind == FileKind::surface ? "surface" : "volume") +
-                     ", which 'tetwright prepare' and 'tetwright mesh' take; " + name_of(task) +
+                     ", which 'tetwright prepare' and 'tetwright mesh' read; " + name_of(task) +
                      " reads tet meshes (" + known_extensions(FileKind::tet_mesh) + ")");
 }
 
@@ -38,15 +38,14 @@ void repair(TetMesh& mesh, const std::string& file, PrepareReport& report) {
   using enum DiagnosticCode;
   add(tet_points_merged, found.merged_points, "points repeated for each tet",
       "merged where coordinates are equal");
-  add(tets_collapsed, found.removed_tets, "tets with a vertex twice", "left out");
-  add(tets_turned, found.turned_tets, "tets listed the other way round", "turned");
+  add(tets_collapsed, found.removed_tets, "tets with a repeated vertex", "left out");
+  add(tets_turned, found.turned_tets, "tets with reversed vertex order", "corrected");
   std::vector<Vec3> first;
   if (!found.first_inverted.empty()) first.push_back(mesh.points[mesh.tets[found.first_inverted.front()][0]]);
-  add(tets_inverted, found.inverted_tets, "flat or negative tets", "kept unless the work puts them right",
-      first);
+  add(tets_inverted, found.inverted_tets, "flat or negative tets", "kept unless the run repairs them", first);
   add(patch_faces_lost, found.lost_faces, "faces of named patches between tets that were merged",
-      "no longer of the boundary, or of another patch from their other side");
-  if (mesh.tets.empty()) throw InputError(file, 0, "all its tets have a vertex twice; nothing is left of it");
+      "no longer on the boundary, or in another patch from their other side");
+  if (mesh.tets.empty()) throw InputError(file, 0, "all its tets have a repeated vertex; no tets remain");
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ std::vector<std::array<Index, N>> to_cells(const Cells& array, std::size_t point
       const std::int64_t p = rows(i, static_cast<py::ssize_t>(k));
       if (p < 0 || static_cast<std::uint64_t>(p) >= points)
         throw InputError(name, 0,
-                         "row " + std::to_string(i) + " of the " + what + " names point " +
+                         "row " + std::to_string(i) + " of the " + what + " refers to point " +
                              std::to_string(p) + ", but there are " + std::to_string(points) +
                              ", numbered from 0");
       cells[static_cast<std::size_t>(i)][k] = static_cast<Index>(p);
@@ -63,7 +63,7 @@ std::vector<MeshField> to_fields(const Fields& fields, std::size_t rows, const s
   std::vector<NameChange> changes;
   add_field_changes(all, names, changes);
   if (!changes.empty())
-    dropped.push_back({"names of fields as they were, the first " + changes.front().own + " (now " +
+    dropped.push_back({"original names of fields, the first " + changes.front().own + " (now " +
                            changes.front().written + ")",
                        changes.size()});
   for (std::size_t f = 0; f < all.size(); ++f) all[f].name = names[f];

@@ -134,7 +134,7 @@ void write_mesh_files(Mesh& mesh, const std::string& path, const std::string& fo
 
 void check_no_standard_output(const CommandLine& line) {
   if (line.outputs.mesh == "-" || line.outputs.boundary == "-")
-    throw UsageError("standard output is the host's; give output and boundary names of files");
+    throw UsageError("standard output belongs to the host program; give file names for output and boundary");
 }
 
 void bind_mesh(py::module_& module) {

@@ -121,12 +121,13 @@ CommandLine parse(std::vector<std::string> arguments) {
         line.outputs.stats.empty()) &&
       line.command != Command::check)
     throw UsageError(
-        "boundary, write_sdf, report and stats are written beside an output; give output too, or call "
+        "boundary, write_sdf, report and stats are written together with an output; give output too, or call "
         "write()");
   check_no_standard_output(line);
   if (!line.console.log_file.empty())
     throw UsageError(
-        "log_file is the program's; leave it out: notes, shortfall, stats and progress say what it would");
+        "log_file is for the program only; leave it out: notes, shortfall, stats and progress have what it "
+        "would say");
   return line;
 }
 
@@ -232,7 +233,7 @@ void make_error_classes(py::module_& module) {
     return made;
   };
   classes.base =
-      make("Error", "What ends a call early: the program's message; `status` is the program's exit status.",
+      make("Error", "Base class of errors: the program's message; `status` is the program's exit status.",
            PyExc_Exception, nullptr, ExitStatus::internal_error);
   classes.usage = make("UsageError", "An option or a combination of them is wrong.", classes.base,
                        PyExc_ValueError, ExitStatus::usage);
@@ -288,7 +289,7 @@ PYBIND11_MODULE(_core, module) {
            [](NamedInputs& to, const std::string& name, const Mesh& mesh) {
              InputMesh input{{mesh.mesh, "material", {}}};
              if (mesh.midside)
-               input.read.dropped.push_back({"midside nodes; tets of ten nodes are taken by their corners",
+               input.read.dropped.push_back({"midside nodes; tets of ten nodes are reduced to their corners",
                                              mesh.midside->points.size()});
              to.values[name] = std::move(input);
            })

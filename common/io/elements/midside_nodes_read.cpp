@@ -42,7 +42,7 @@ void MidsideNodesRead::remove_from(ReadTetMesh& read, std::vector<Triangle>& tri
   for (Tet& tet : mesh.tets) renumber(tet);
   for (Triangle& t : triangles) renumber(t);
   if (before > next)
-    read.dropped.push_back({"midside nodes; tets of ten nodes are taken by their corners", before - next});
+    read.dropped.push_back({"midside nodes; tets of ten nodes are reduced to their corners", before - next});
 }
 
 }  // namespace tetwright

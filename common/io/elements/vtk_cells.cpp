@@ -38,8 +38,8 @@ std::vector<std::pair<std::int64_t, std::string>> parse_vtk_names(const std::str
     const std::size_t tab = line.find('\t');
     std::int64_t number = 0;
     if (tab == std::string_view::npos || !parse_number(line.substr(0, tab), number))
-      throw InputError(file + ": in " + in_quotes(array) +
-                       " a number, a tab and a name were expected, found " + in_quotes(line));
+      throw InputError(file + ": in " + in_quotes(array) + ": expected a number, a tab and a name, found " +
+                       in_quotes(line));
     names.emplace_back(number, line.substr(tab + 1));
   }
   return names;

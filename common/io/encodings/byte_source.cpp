@@ -149,7 +149,7 @@ void ByteSource::check_end() {
   }
   if (!state_->inflated && !state_->member_ended)
     throw InputError(name_ +
-                     ": the compressed data end early, without their checksum; the file is cut short: " +
+                     ": the compressed data end early, without their checksum; the file is truncated: " +
                      "copy or export it again");
 }
 

@@ -76,7 +76,7 @@ struct Hdf5Writer::File {
         H5Dclose);
     if (!dataset.good() || H5Dwrite(dataset.id(), native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
       throw OutputError("the HDF5 library cannot write " + std::to_string(values.size()) + " numbers of '" +
-                        name + "'; is there too little memory?");
+                        name + "'; is there enough memory?");
   }
 };
 
@@ -85,7 +85,7 @@ Hdf5Writer::Hdf5Writer() {
   const Handle access = in_memory();
   file_ = std::make_unique<File>(
       File{Handle(H5Fcreate(unique_name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose)});
-  if (!file_->handle.good()) throw OutputError("the HDF5 library cannot make a file in memory");
+  if (!file_->handle.good()) throw OutputError("the HDF5 library cannot create a file in memory");
 }
 Hdf5Writer::~Hdf5Writer() = default;
 
@@ -104,7 +104,7 @@ std::string Hdf5Writer::bytes() {
   const ssize_t size = H5Fget_file_image(file_->handle.id(), nullptr, 0);
   std::string out(size > 0 ? static_cast<std::size_t>(size) : 0, '\0');
   if (size <= 0 || H5Fget_file_image(file_->handle.id(), out.data(), out.size()) != size)
-    throw OutputError("the HDF5 library cannot hand over a file in memory");
+    throw OutputError("the HDF5 library cannot return its file from memory");
   return out;
 }
 
@@ -127,7 +127,7 @@ struct Hdf5Reader::File {
 Hdf5Reader::Hdf5Reader(std::string bytes, std::string name) : name_(std::move(name)) {
   be_quiet();
   file_ = std::make_unique<File>(std::move(bytes));
-  if (file_->id < 0) throw InputError(name_ + ": this is no HDF5 file, or a damaged one");
+  if (file_->id < 0) throw InputError(name_ + ": this is not an HDF5 file, or it is damaged");
 }
 Hdf5Reader::~Hdf5Reader() = default;
 
@@ -136,14 +136,13 @@ std::vector<double> Hdf5Reader::numbers(const std::string& dataset, std::size_t 
     throw InputError(name_ + ": dataset " + in_quotes(dataset) + " " + what);
   };
   const Handle set(H5Dopen2(file_->id, dataset.c_str(), H5P_DEFAULT), H5Dclose);
-  if (!set.good()) fail("is not there; do the files belong together?");
+  if (!set.good()) fail("is missing; do the files belong together?");
   const Handle type(H5Dget_type(set.id()), H5Tclose), space(H5Dget_space(set.id()), H5Sclose);
   const H5T_class_t kind = H5Tget_class(type.id());
   if (kind != H5T_INTEGER && kind != H5T_FLOAT) fail("does not hold numbers");
   const hssize_t n = H5Sget_simple_extent_npoints(space.id());
   if (n < 0 || static_cast<std::uint64_t>(n) > max_count)
-    fail("has " + std::to_string(n) + " numbers, more than the " + std::to_string(max_count) +
-         " that were expected");
+    fail("has " + std::to_string(n) + " numbers, more than the " + std::to_string(max_count) + " expected");
   std::vector<double> values(static_cast<std::size_t>(n));
   if (n > 0 && H5Dread(set.id(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
     fail("cannot be read; the file is damaged, or compressed by something other than zlib");

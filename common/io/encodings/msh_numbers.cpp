@@ -47,7 +47,7 @@ std::size_t MshNumbers::checked_count(std::int64_t n, std::string_view what, std
   const std::size_t room = binary_ ? in_.left() / binary_bytes : (in_.left() + 1) / text_bytes;
   if (static_cast<std::uint64_t>(n) > room)
     in_.fail("the " + std::string(what) + " is " + std::to_string(n) + ", but only " +
-             std::to_string(in_.left()) + " bytes follow; the file is cut short or its header is wrong");
+             std::to_string(in_.left()) + " bytes follow; the file is truncated or its header is wrong");
   return static_cast<std::size_t>(n);
 }
 

@@ -15,8 +15,8 @@ namespace {
 void expect_bytes(const TextScanner& in, std::size_t n, std::size_t bytes_each, const std::string& what) {
   // The last word may lack trailing white space.
   if (n > (in.left() + 1) / bytes_each)
-    in.fail(std::to_string(n) + " numbers are promised (" + what + "), but only " +
-            std::to_string(in.left()) + " bytes follow; the file is cut short or its header is wrong");
+    in.fail("the header gives " + std::to_string(n) + " numbers (" + what + "), but only " +
+            std::to_string(in.left()) + " bytes follow; the file is truncated or its header is wrong");
 }
 
 template <class Value, class Stored>
@@ -87,7 +87,7 @@ std::vector<Value> read_vtk_numbers(TextScanner& in, bool binary, const std::str
   else if (is({"double"}))
     kind = Kind::f64;
   else
-    in.fail("unknown type of numbers " + in_quotes(type));
+    in.fail("unknown number type " + in_quotes(type));
   if (!binary) {
     expect_bytes(in, n, 2, what);
     std::vector<Value> values(n);

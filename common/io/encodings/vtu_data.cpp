@@ -43,7 +43,7 @@ class RawReader {
 };
 
 std::string cut_short() {
-  return "the data of an array ends too early or is not base64; the file is cut short";
+  return "the data of an array ends too early or is not base64; the file is truncated";
 }
 
 }  // namespace
@@ -64,7 +64,7 @@ VtuData::VtuData(std::string_view bytes, std::string name)
     const std::size_t close = bytes.find('>', element);
     const std::size_t mark = close == std::string_view::npos ? close : bytes.find('_', close);
     if (mark == std::string_view::npos)
-      fail("the appended data has no underscore at its beginning; cut short");
+      fail("the appended data does not begin with an underscore; the file is truncated");
     xml = bytes.substr(0, element);
     const std::string_view tag = bytes.substr(element, close - element);
     appended_raw_ =
@@ -77,7 +77,7 @@ VtuData::VtuData(std::string_view bytes, std::string name)
   // Without the appended data its enclosing elements are not closed, which the parser reports at the end.
   if (!result && !(cut && result.status == pugi::status_end_element_mismatch))
     fail("byte " + std::to_string(result.offset) + ": not XML: " + result.description() +
-         "; the file is damaged or cut short");
+         "; the file is damaged or truncated");
   root_ = document_.child("VTKFile");
   if (!root_) fail("there is no element VTKFile in it; is this a VTK XML file?");
   const std::string_view order = root_.attribute("byte_order").as_string("LittleEndian");
@@ -195,8 +195,8 @@ void VtuData::decode_from(Source source, pugi::xml_node array, std::size_t max_b
   };
   const auto check_size = [&](std::uint64_t size, std::uint64_t available) {
     if (size > available)
-      fail(array, "its header promises " + std::to_string(size) + " bytes, but the file holds " +
-                      std::to_string(available) + " at most; it is cut short or damaged");
+      fail(array, "its header gives " + std::to_string(size) + " bytes, but the file holds " +
+                      std::to_string(available) + " at most; it is truncated or damaged");
     if (size > max_bytes)
       fail(array, std::to_string(size) + " bytes, but " + std::to_string(max_bytes) + " were expected");
   };
@@ -254,7 +254,7 @@ void VtuData::decode(pugi::xml_node array, std::size_t max_bytes, const DecodedB
   std::int64_t offset = 0;
   if (!parse_number(text, offset) || offset < 0 || static_cast<std::uint64_t>(offset) > appended_.size())
     fail(array, "its offset " + in_quotes(text) + " is outside the appended data (" +
-                    std::to_string(appended_.size()) + " bytes); the file is cut short");
+                    std::to_string(appended_.size()) + " bytes); the file is truncated");
   const std::string_view data = appended_.substr(static_cast<std::size_t>(offset));
   appended_raw_ ? decode_from(RawReader(data), array, max_bytes, out)
                 : decode_from(Base64Reader(data), array, max_bytes, out);
@@ -303,7 +303,8 @@ std::vector<Value> VtuData::values(pugi::xml_node array, std::size_t max_count) 
     std::string rest;  // part of a number that continues in the next piece
     decode(array, max_count > SIZE_MAX / 8 ? SIZE_MAX : max_count * sizeof(Stored),
            {[&](std::size_t size) {
-              if (size % sizeof(Stored) != 0) fail(array, "its size is no multiple of that of its numbers");
+              if (size % sizeof(Stored) != 0)
+                fail(array, "its size is not a multiple of the size of its numbers");
               out.reserve(size / sizeof(Stored));
             },
             [&](std::string_view bytes) {
@@ -365,11 +366,11 @@ void VtuData::texts(pugi::xml_node array, std::size_t count,
     while (!bytes.empty()) {
       const std::size_t size = std::min(bytes.find('\0'), bytes.size());
       if (text.size() + size > max_vtu_text)
-        fail(array, "text " + std::to_string(taken) + " (counted from 0) has more than " +
+        fail(array, "string " + std::to_string(taken) + " (counted from 0) has more than " +
                         std::to_string(max_vtu_text) + " bytes; shorten it");
       text += bytes.substr(0, size);
       if (size == bytes.size()) return;
-      if (taken++ == count) fail(array, "more than the " + std::to_string(count) + " texts expected");
+      if (taken++ == count) fail(array, "more than the " + std::to_string(count) + " strings expected");
       take(text);
       text.clear();
       bytes.remove_prefix(size + 1);
@@ -380,7 +381,7 @@ void VtuData::texts(pugi::xml_node array, std::size_t count,
     for (std::string_view word; !(word = in.word()).empty();) {
       std::int64_t byte = 0;
       if (!parse_number(word, byte) || byte < INT8_MIN || byte > UINT8_MAX)
-        fail(array, "expected the number of a character, found " + in_quotes(word));
+        fail(array, "expected a character code, found " + in_quotes(word));
       const char character = static_cast<char>(byte);
       add({&character, 1});
     }
@@ -388,7 +389,7 @@ void VtuData::texts(pugi::xml_node array, std::size_t count,
     decode(array, count > SIZE_MAX / (max_vtu_text + 1) ? SIZE_MAX : count * (max_vtu_text + 1),
            {[](std::size_t) {}, add});
   }
-  if (!text.empty()) fail(array, "its last text does not end with a zero; the file is cut short");
+  if (!text.empty()) fail(array, "its last string does not end with a zero; the file is truncated");
   expect_size(array, taken, count);
 }
 

@@ -42,7 +42,7 @@ ZipArchive::ZipArchive(std::string_view bytes, std::string name) : name_(std::mo
     return;
   }
   if (source) zip_source_free(source);
-  throw InputError(name_, 0, "not a ZIP archive: " + text_of(error) + "; the file is damaged or cut short");
+  throw InputError(name_, 0, "not a ZIP archive: " + text_of(error) + "; the file is damaged or truncated");
 }
 
 bool ZipArchive::has(const std::string& path) const {
@@ -57,7 +57,7 @@ std::string ZipArchive::read(const std::string& path) const {
   if (!file) fail(zip_strerror(archive_.get()));
   zip_stat_t stat;
   if (zip_stat(archive_.get(), path.c_str(), ZIP_FL_NOCASE, &stat) != 0 || !(stat.valid & ZIP_STAT_COMP_SIZE))
-    fail("its size is not known");
+    fail("its size is unknown");
   const std::uint64_t max_size = std::max<std::uint64_t>(unsuspected_size, max_packing * stat.comp_size);
   std::string content;
   std::array<char, 1 << 16> chunk;
@@ -67,7 +67,7 @@ std::string ZipArchive::read(const std::string& path) const {
     if (n == 0) return content;
     content.append(chunk.data(), static_cast<std::size_t>(n));
     if (content.size() > max_size)
-      fail("packed more than " + std::to_string(max_packing) + " times as small");
+      fail("it is compressed by a factor of more than " + std::to_string(max_packing));
   }
 }
 

@@ -55,13 +55,13 @@ class LabelGroups {
 /// Numbers that label the groups in a file: the groups' own numbers if all are above 0, have 32 bits and
 /// differ; otherwise their positions in the list, from 1 on.
 inline std::vector<std::int32_t> labels_of(const std::vector<SurfaceRegion>& groups) {
-  std::vector<std::int32_t> own, places;
+  std::vector<std::int32_t> own, positions;
   for (const SurfaceRegion& group : groups) {
     if (group.number > 0 && group.number <= std::numeric_limits<std::int32_t>::max())
       own.push_back(static_cast<std::int32_t>(group.number));
-    places.push_back(static_cast<std::int32_t>(places.size()) + 1);
+    positions.push_back(static_cast<std::int32_t>(positions.size()) + 1);
   }
-  return std::set<std::int32_t>(own.begin(), own.end()).size() == groups.size() ? own : places;
+  return std::set<std::int32_t>(own.begin(), own.end()).size() == groups.size() ? own : positions;
 }
 
 }  // namespace tetwright

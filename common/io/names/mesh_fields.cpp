@@ -28,9 +28,9 @@ std::vector<MaterialTag> materials_of(const MeshField& field, const std::string&
       std::string text;
       append_number(text, value);
       throw InputError(file, 0,
-                       "cell field " + in_quotes(field.name) + " is to be the material, but tet " +
+                       "cell field " + in_quotes(field.name) + " was chosen as the material, but tet " +
                            std::to_string(t) + " (counted from 0) has " + text +
-                           ", which is no whole number that fits into 32 bits");
+                           ", which is not a 32-bit integer");
     }
     materials[t] = checked_material(static_cast<std::int64_t>(value), file, 0);
   }

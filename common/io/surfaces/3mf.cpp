@@ -153,7 +153,8 @@ class Reader3mf {
     const pugi::xml_node build = child(root, "build");
     for (const pugi::xml_node item : build.children())
       if (is_called(item, "item")) place(model, item, Eigen::Affine3d::Identity(), {});
-    if (placed_ == 0) throw InputError(name_, 0, "it builds no object; export it with the objects placed");
+    if (placed_ == 0)
+      throw InputError(name_, 0, "no object is placed in its build; export it with the objects placed");
     return surface_.finish(dropped, groups_);
   }
 
@@ -211,8 +212,8 @@ class Reader3mf {
     for (const Placing* p = within; p; p = p->within)
       if (p->object == object) holder->xml.fail(object, "object " + in_quotes(id) + " is a part of itself");
     if (here.depth > max_depth)
-      holder->xml.fail(object, "object " + in_quotes(id) + " is a part of more than " +
-                                   std::to_string(max_depth) + " objects within each other");
+      holder->xml.fail(object, "object " + in_quotes(id) + " is nested in more than " +
+                                   std::to_string(max_depth) + " objects");
     if (++placed_ > max_placed_objects)
       from.xml.fail(reference,
                     "objects are placed more than " + std::to_string(max_placed_objects) + " times");
@@ -225,12 +226,12 @@ class Reader3mf {
     // The type of an object with components has no meaning.
     const std::string_view type = object.attribute("type").value();
     if (type == "support" || type == "solidsupport") {
-      surface_.drop("objects that support others");
+      surface_.drop("support objects");
     } else if (const pugi::xml_node mesh = child(object, "mesh")) {
       surface_.begin_group(group_of(here));
       add_mesh(holder->xml, mesh, transform);
     } else {
-      surface_.drop("objects that are no meshes");
+      surface_.drop("objects that are not meshes");
     }
   }
 
@@ -267,7 +268,7 @@ class Reader3mf {
                                           xml.number<std::int64_t>(t, "v3")};
       for (std::int64_t& corner : corners) {
         if (corner < 0 || corner >= count)
-          xml.fail(t, "a triangle names vertex " + std::to_string(corner) + ", but the object has " +
+          xml.fail(t, "a triangle refers to vertex " + std::to_string(corner) + ", but the object has " +
                           std::to_string(count) + "; the file is damaged");
         corner += first;
       }

@@ -83,7 +83,7 @@ class SceneReader {
     for (std::size_t at = glb_header_size; at < bytes.size();) {
       const std::size_t left = bytes.size() - at;
       if (left < chunk_header_size || number(at) > left - chunk_header_size)
-        fail("byte " + std::to_string(at) + ": a chunk goes beyond the end of the file; it is cut short");
+        fail("byte " + std::to_string(at) + ": a chunk extends beyond the end of the file; it is truncated");
       const std::string_view content = bytes.substr(at + chunk_header_size, number(at));
       // The first chunk of each kind is used; other kinds may follow.
       if (number(at + 4) == json_chunk && !found_text) {
@@ -96,7 +96,7 @@ class SceneReader {
       at += chunk_header_size + content.size();
     }
     scene_ = json::parse(text, nullptr, false);
-    if (!scene_.is_object()) fail("its description is not JSON; the file is damaged");
+    if (!scene_.is_object()) fail("its description is not valid JSON; the file is damaged");
   }
 
   void check_extensions() const {
@@ -115,17 +115,17 @@ class SceneReader {
     static const json none = json::array();
     const auto found = scene_.find(kind);
     if (found == scene_.end()) return none;
-    if (!found->is_array()) fail(in_quotes(kind) + " is no list; the file is damaged");
+    if (!found->is_array()) fail(in_quotes(kind) + " is not a list; the file is damaged");
     return *found;
   }
 
   const json& at(const char* kind, std::int64_t index) const {
     const json& items = list(kind);
     if (index < 0 || static_cast<std::size_t>(index) >= items.size())
-      fail("there is no number " + std::to_string(index) + " among the " + std::to_string(items.size()) +
-           " " + kind + "; the file is damaged");
+      fail("it refers to index " + std::to_string(index) + " (counted from 0), but has " +
+           std::to_string(items.size()) + " " + kind + "; the file is damaged");
     const json& item = items[static_cast<std::size_t>(index)];
-    if (!item.is_object()) fail(called(kind, index) + " is no object; the file is damaged");
+    if (!item.is_object()) fail(called(kind, index) + " is not an object; the file is damaged");
     return item;
   }
 
@@ -142,7 +142,7 @@ class SceneReader {
     constexpr double exact = 9007199254740992.0;
     if (found == object.end() || !found->is_number() || std::abs(found->get<double>()) > exact ||
         found->get<double>() != std::floor(found->get<double>()))
-      fail(what + ": " + in_quotes(key) + " is missing or no whole number; the file is damaged");
+      fail(what + ": " + in_quotes(key) + " is missing or not a whole number; the file is damaged");
     return static_cast<std::int64_t>(found->get<double>());
   }
 
@@ -178,14 +178,14 @@ class SceneReader {
     static const json none = json::array();
     const auto found = object.find(key);
     if (found == object.end()) return none;
-    if (!found->is_array()) fail(what + ": " + in_quotes(key) + " is no list; the file is damaged");
+    if (!found->is_array()) fail(what + ": " + in_quotes(key) + " is not a list; the file is damaged");
     return *found;
   }
 
   void add_scene(std::int64_t number) {
     const json& scene = at("scenes", number);
     for (const json& node : list_of(scene, called("scenes", number), "nodes")) {
-      if (!node.is_number_integer()) fail(called("scenes", number) + ": a node is no number");
+      if (!node.is_number_integer()) fail(called("scenes", number) + ": a node is not a number");
       const auto index = node.get<std::int64_t>();
       if (roots_.insert(index).second)  // a root may be in several scenes
         add_node(index, Eigen::Affine3d::Identity(), 0);
@@ -210,13 +210,14 @@ class SceneReader {
     const json& node = at("nodes", number);
     // The nodes of a glTF file must form trees.
     if (!placed_.insert(number).second)
-      fail(what + " is a child of several nodes, of itself, or of one and of the scene; the file is damaged");
+      fail(what +
+           " is a child of several nodes, of itself, or of both a node and the scene; the file is damaged");
     if (depth > max_node_depth)
       fail(what + " is more than " + std::to_string(max_node_depth) + " nodes below the scene");
     const Eigen::Affine3d transform = outer * transform_of(node, what);
     if (node.contains("mesh")) add_mesh(node, whole(node, what, "mesh"), transform);
     for (const json& child : list_of(node, what, "children")) {
-      if (!child.is_number_integer()) fail(what + ": a child is no number");
+      if (!child.is_number_integer()) fail(what + ": a child is not a number");
       add_node(child.get<std::int64_t>(), transform, depth + 1);
     }
   }
@@ -229,7 +230,7 @@ class SceneReader {
     std::map<std::int64_t, std::uint32_t> groups;  // by material
     std::set<std::int64_t> materials;
     for (const json& primitive : primitives) {
-      if (!primitive.is_object()) fail(what + ": a primitive is no object; the file is damaged");
+      if (!primitive.is_object()) fail(what + ": a primitive is not an object; the file is damaged");
       materials.insert(whole(primitive, what, "material", -1));
     }
     for (const json& primitive : primitives) {
@@ -254,7 +255,7 @@ class SceneReader {
   void add_primitive(const json& primitive, const std::string& what, const Eigen::Affine3d& transform) {
     const std::int64_t mode = whole(primitive, what, "mode", mode_triangles);
     if (mode < mode_points || mode > mode_fan)
-      fail(what + ": there is no mode " + std::to_string(mode) + "; the file is damaged");
+      fail(what + ": unknown mode " + std::to_string(mode) + "; the file is damaged");
     if (mode < mode_triangles) {
       surface_.drop(mode == mode_points ? "sets of points" : "sets of lines");
       return;
@@ -273,7 +274,7 @@ class SceneReader {
     const bool strip = mode == mode_strip, fan = mode == mode_fan;
     if (!strip && !fan && corners.size() % 3 != 0)
       fail(what + ": triangles have " + std::to_string(corners.size()) +
-           " corners, which is no multiple of three; the file is damaged");
+           " corners, which is not a multiple of three; the file is damaged");
     const bool mirrored = transform.linear().determinant() < 0;
     for (std::size_t i = 2; i < corners.size(); i += strip || fan ? 1 : 3) {
       const bool turned = mirrored != (strip && i % 2 == 1);
@@ -298,17 +299,17 @@ class SceneReader {
     const std::string what = called("accessors", number);
     const json& accessor = at("accessors", number);
     if (accessor.contains("sparse") || !accessor.contains("bufferView"))
-      fail(what + " is sparse or empty, which is not supported; export it with all its numbers");
+      fail(what + " is sparse or empty, which is not supported; export it with all values stored");
     const std::int64_t component = whole(accessor, what, "componentType");
     if (text(accessor, "type") != type ||
         std::find(component_types.begin(), component_types.end(), component) == component_types.end())
-      fail(what + " has numbers of another kind than positions or indices have");
+      fail(what + " has a number type that is not valid for positions or indices");
     const std::int64_t view_number = whole(accessor, what, "bufferView");
     const json& view = at("bufferViews", view_number);
     const std::string of_view = called("bufferViews", view_number);
     const std::int64_t buffer = whole(view, of_view, "buffer");
     if (buffer != 0 || at("buffers", buffer).contains("uri"))
-      fail(of_view + ": its numbers are in another file or in text; export it with all numbers in the .glb");
+      fail(of_view + ": its data are in another file or stored as text; export it with all data in the .glb");
     const std::size_t width = component == type_uint8 ? 1 : component == type_uint16 ? 2 : 4;
     const std::size_t item = width * components;
     const std::size_t stride = size(view, of_view, "byteStride", static_cast<std::int64_t>(item));
@@ -316,10 +317,10 @@ class SceneReader {
                       length = size(view, of_view, "byteLength"),
                       offset = size(accessor, what, "byteOffset", 0), count = size(accessor, what, "count");
     if (first > binary_.size() || length > binary_.size() - first)
-      fail(of_view + " goes beyond the end of the file; it is damaged or cut short");
+      fail(of_view + " extends beyond the end of the file; it is damaged or truncated");
     if (stride < item || count == 0 || offset > length || length - offset < item ||
         count - 1 > (length - offset - item) / stride)
-      fail(what + " goes beyond the end of its buffer view; the file is damaged");
+      fail(what + " extends beyond the end of its buffer view; the file is damaged");
     return {binary_.data() + first + offset, stride, count, component};
   }
 
@@ -349,7 +350,7 @@ class SceneReader {
                                   : of.component == type_uint16 ? load<std::uint16_t>(from, swap)
                                                                 : load<std::uint32_t>(from, swap);
       if (index >= points.size())
-        fail(called("accessors", number) + " names vertex " + std::to_string(index) + ", but there are " +
+        fail(called("accessors", number) + " refers to vertex " + std::to_string(index) + ", but there are " +
              std::to_string(points.size()) + "; the file is damaged");
       corners[i] = points[index];
     }

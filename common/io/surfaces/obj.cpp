@@ -34,14 +34,14 @@ std::int64_t point_of(const TextScanner& in, std::string_view word, std::size_t 
   if (index > 0 && index < no_index) return index - 1;
   if (index < 0 && index >= -static_cast<std::int64_t>(points))
     return static_cast<std::int64_t>(points) + index;
-  in.fail("a face names point " + std::to_string(index) + ", but " + std::to_string(points) +
+  in.fail("a face refers to point " + std::to_string(index) + ", but " + std::to_string(points) +
           " points have been read (OBJ counts from 1); export the file again");
 }
 
 /// Statements that are not read, and their contents, except statements that only concern display.
 constexpr std::array<std::pair<std::string_view, const char*>, 8> other_statements{
     {{"l", "lines"},
-     {"p", "points drawn as such"},
+     {"p", "point elements"},
      {"vt", "texture coordinates"},
      {"vn", "normals"},
      {"vp", "points of parameter spaces"},
@@ -139,7 +139,7 @@ TriangleMesh read_obj(std::string_view bytes, const std::string& name, std::vect
       Vec3 p;
       for (int k = 0; k < 3; ++k) {
         const std::string_view word = next_word(in);
-        if (word.empty()) in.fail("a point with fewer than three coordinates; the file may be cut short");
+        if (word.empty()) in.fail("a point with fewer than three coordinates; the file may be truncated");
         if (!parse_number(word, p[k])) in.fail("expected a coordinate, found " + in_quotes(word));
       }
       surface.add_point(p, place);
@@ -155,7 +155,7 @@ TriangleMesh read_obj(std::string_view bytes, const std::string& name, std::vect
       }
       if (polygon.size() < 3)
         in.fail("a face with " + std::to_string(polygon.size()) +
-                " vertices; three are needed, the file may be cut short");
+                " vertices; at least three are needed; the file may be truncated");
       surface.begin_group(names.group());
       surface.add_fan(polygon);
     } else if (!names.read(keyword, in)) {
@@ -168,9 +168,9 @@ TriangleMesh read_obj(std::string_view bytes, const std::string& name, std::vect
   // A face may precede its points, so indices are checked at the end.
   if (largest >= static_cast<std::int64_t>(surface.point_count()))
     throw InputError(name, largest_line,
-                     "a face names point " + std::to_string(largest + 1) + ", but there are " +
+                     "a face refers to point " + std::to_string(largest + 1) + ", but there are " +
                          std::to_string(surface.point_count()) +
-                         " points; the file is cut short or was exported wrongly");
+                         " points; the file is truncated or was exported incorrectly");
   return surface.finish(dropped, names.groups(name));
 }
 

@@ -47,7 +47,7 @@ TriangleMesh read_off(std::string_view bytes, const std::string& name, std::vect
   // A point takes at least the six bytes of "0 0 0" and a line end.
   if (static_cast<std::uint64_t>(points) > (in.left() + 1) / 6)
     in.fail("the number of points is " + std::to_string(points) + ", but only " + std::to_string(in.left()) +
-            " bytes follow; the file is cut short or its header is wrong");
+            " bytes follow; the file is truncated or its header is wrong");
 
   SurfaceBuilder surface(name);
   surface.reserve(static_cast<std::size_t>(points), faces);

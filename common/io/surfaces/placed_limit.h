@@ -17,8 +17,8 @@ class PlacedLimit {
     count_ += count;
     if (count_ > max_count)
       throw InputError(file, 0,
-                       "its objects, as often as they are placed, have more than " +
-                           std::to_string(max_count) + " vertices and triangles; place fewer");
+                       "its placed objects have in total more than " + std::to_string(max_count) +
+                           " vertices and triangles; place fewer");
   }
 
  private:

@@ -160,7 +160,7 @@ PlyHeader read_ply_header(TextScanner& in) {
         header.encoding = Encoding::big;
       else
         in.fail("unknown format " + in_quotes(format) +
-                "; known are ascii, binary_little_endian and binary_big_endian");
+                "; supported: ascii, binary_little_endian and binary_big_endian");
     } else if (keyword == "element") {
       Element element;
       element.name = std::string(in.word_on_line().substr(0, 64));
@@ -238,7 +238,7 @@ class BinaryBody {
 
  private:
   const char* take(Type type, std::size_t n) {
-    if (n > left() / type_size(type)) fail("the file ends within the data; it is cut short");
+    if (n > left() / type_size(type)) fail("the file ends within the data; it is truncated");
     const char* at = bytes_.data() + offset_;
     offset_ += n * type_size(type);
     return at;
@@ -272,9 +272,9 @@ void check_count(const Body& body, const Element& element) {
   std::size_t min_size = 0;
   for (const Property& p : element.properties) min_size += body.size(p.count_type ? *p.count_type : p.type);
   if (min_size > 0 && element.count > body.left() / min_size)
-    body.fail("the header promises " + std::to_string(element.count) + " of element " +
+    body.fail("the header gives " + std::to_string(element.count) + " items of element " +
               in_quotes(element.name) + ", but only " + std::to_string(body.left()) +
-              " bytes follow; the file is cut short");
+              " bytes follow; the file is truncated");
 }
 
 /// Output of read_element().
@@ -307,7 +307,7 @@ void read_element(Body& body, const Element& element, bool with_fields, PlyConte
         const std::int64_t n = body.integer(*p.count_type, "length of a list");
         if (n < 0 || static_cast<std::uint64_t>(n) > body.left() / body.size(p.type))
           body.fail("a list of " + std::to_string(n) + " items, but only " + std::to_string(body.left()) +
-                    " bytes follow; the file is cut short or damaged");
+                    " bytes follow; the file is truncated or damaged");
         const auto length = static_cast<std::size_t>(n);
         if (p.role == Role::vertices) {
           polygon.resize(length);

@@ -40,7 +40,7 @@ TriangleMesh read_binary(std::string_view bytes, const std::string& name, std::s
     if (bytes[begin + 36] != 0 || bytes[begin + 37] != 0) surface.drop("triangles with attribute bytes");
   }
   const std::size_t end = stl_header_size + triangles * record_size;
-  surface.drop("bytes behind the last triangle", bytes.size() - end);
+  surface.drop("bytes after the last triangle", bytes.size() - end);
   return surface.finish(dropped);
 }
 
@@ -82,7 +82,7 @@ class SolidNames {
       const auto [known, added] = lines.emplace(groups[i].name, lines_[i]);
       if (!added)
         throw InputError(file, lines_[i],
-                         "a solid is called " + in_quotes(groups[i].name) + " like the one of line " +
+                         "a solid is called " + in_quotes(groups[i].name) + ", like the one in line " +
                              std::to_string(known->second) + "; give one of them another name");
     }
     return groups;
@@ -105,7 +105,7 @@ TriangleMesh read_ascii(std::string_view bytes, const std::string& name, std::ve
     surface.begin_group(solids.last());
     for (;;) {
       const std::string_view word = in.word();
-      if (word.empty()) in.fail("the file ends without \"endsolid\"; it is cut short");
+      if (word.empty()) in.fail("the file ends without \"endsolid\"; it is truncated");
       if (is_word(word, "endsolid")) {
         in.skip_line();
         break;
@@ -138,7 +138,7 @@ TriangleMesh read_stl(std::string_view bytes, const std::string& name, std::vect
   if (bytes.size() < stl_header_size) {
     if (says_solid) return read_ascii(bytes, name, dropped);
     throw InputError(name + ": only " + std::to_string(bytes.size()) +
-                     " bytes, too short for an STL file; it is cut short or not STL");
+                     " bytes, too short for an STL file; it is truncated or not STL");
   }
   const std::size_t triangles = load<std::uint32_t>(bytes.data() + 80, !little_endian_machine);
   const std::size_t expected = stl_header_size + triangles * record_size;
@@ -151,7 +151,7 @@ TriangleMesh read_stl(std::string_view bytes, const std::string& name, std::vect
   if (expected > bytes.size())
     throw InputError(name + ": byte 80: " + std::to_string(triangles) + " triangles need " +
                      std::to_string(expected) + " bytes, but the file has " + std::to_string(bytes.size()) +
-                     "; it is cut short or not STL");
+                     "; it is truncated or not STL");
   return read_binary(bytes, name, triangles, dropped);
 }
 

@@ -62,7 +62,7 @@ void SurfaceBuilder::fail_point(const Vec3& point, const std::string& place) con
 }
 
 void SurfaceBuilder::fail_index(std::int64_t index, const std::string& place) const {
-  throw InputError(file_ + ": " + place + ": a face names point " + std::to_string(index) +
+  throw InputError(file_ + ": " + place + ": a face refers to point " + std::to_string(index) +
                    " (counted from 0), but there are " + std::to_string(mesh_.points.size()) +
                    " points; export the file again");
 }

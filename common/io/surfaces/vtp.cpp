@@ -105,8 +105,8 @@ TriangleMesh read_poly_data(std::string_view bytes, const std::string& name, std
     for (std::size_t c = 0; c < polygons; ++c) {
       const std::size_t end = offsets[c];
       if (end < begin || end > connectivity.size())
-        data.fail(offsets_node, "polygon " + std::to_string(c) + " ends at " + std::to_string(end) + " of " +
-                                    std::to_string(connectivity.size()) + "; the file is damaged");
+        data.fail(offsets_node, "polygon " + std::to_string(c) + " ends at index " + std::to_string(end) +
+                                    " of " + std::to_string(connectivity.size()) + "; the file is damaged");
       polygon.assign(connectivity.begin() + static_cast<std::ptrdiff_t>(begin),
                      connectivity.begin() + static_cast<std::ptrdiff_t>(end));
       if (!labels.empty()) surface.begin_group(labels[verts + lines + c]);

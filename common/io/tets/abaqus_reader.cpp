@@ -111,7 +111,7 @@ class AbaqusReader {
       else if (keyword.name == "SOLIDSECTION")
         note_section(keyword);
       else if (keyword.name == "INCLUDE")
-        fail(keyword.line, "*INCLUDE is not followed; name the file that has the nodes and elements");
+        fail(keyword.line, "*INCLUDE is not supported; give the file that has the nodes and elements");
       else if (keyword.name == "PART" && ++parts_ > 1)
         fail(keyword.line, "a second *PART; save each as a file of its own, or the whole as one part");
       else if (keyword.name == "INSTANCE")
@@ -238,7 +238,7 @@ class AbaqusReader {
       if (set) set_names_.emplace(in_capitals(*set), *set);
       numbers.clear();
     }
-    if (!numbers.empty()) fail(line_number_, "the file ends within an element; it is cut short");
+    if (!numbers.empty()) fail(line_number_, "the file ends within an element; it is truncated");
     if (kind == Kind::volume) {
       if (volumes_.empty()) volumes_line_ = keyword.line;
       volumes_.add("elements of type " + *type, count);
@@ -257,8 +257,8 @@ class AbaqusReader {
   Index node(std::int64_t element, std::int64_t number) const {
     const Index index = nodes_.find(number);
     if (index == no_index)
-      fail(line_number_, "element " + std::to_string(element) + " names node " + std::to_string(number) +
-                             ", which no *NODE before it has; export the file again");
+      fail(line_number_, "element " + std::to_string(element) + " refers to node " + std::to_string(number) +
+                             ", which no earlier *NODE defines; export the file again");
     return index;
   }
 
@@ -307,7 +307,7 @@ class AbaqusReader {
     const std::int64_t first = whole_number(fields[0], "first number"),
                        last = whole_number(fields[1], "last number"),
                        step = fields.size() > 2 && !fields[2].empty() ? whole_number(fields[2], "step") : 1;
-    if (step < 1) fail(line_number_, "a step of " + std::to_string(step) + "; it is 1 or more");
+    if (step < 1) fail(line_number_, "a step of " + std::to_string(step) + "; it must be 1 or more");
     // Limit the numbers to as many as there are elements, whatever the file says.
     const auto max_steps = static_cast<std::int64_t>(std::max<std::size_t>(elements_.size(), 1));
     if (last < first || (last - first) / step >= max_steps)
@@ -349,8 +349,7 @@ class AbaqusReader {
   void check_instance(const Keyword& keyword) {
     if (++instances_ > 1) fail(keyword.line, "a second *INSTANCE; save the assembly as one part");
     if (next_data())
-      fail(line_number_,
-           "the instance is moved or turned; save the mesh where it is, without a transformation");
+      fail(line_number_, "the instance is translated or rotated; save the mesh without a transformation");
   }
 
   /// Collects the indices of the tets in a set and in the sets that it includes.
@@ -446,7 +445,7 @@ class AbaqusReader {
   void note_dropped() {
     std::vector<Dropped>& dropped = result_.dropped;
     others_.append_to(dropped);
-    if (twice_ > 0) dropped.push_back({"tets in several sections, of which the last counts", twice_});
+    if (twice_ > 0) dropped.push_back({"tets in several sections; the last one is used", twice_});
     std::vector<std::string> sets;
     for (const std::string& name : node_sets_)
       if (!surfaces_.contains(name)) sets.push_back(name);

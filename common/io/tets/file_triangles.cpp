@@ -182,9 +182,9 @@ class TriangleTaker {
                 std::to_string(p.z()) + ")";
         break;
       }
-    throw InputError(file_ + ": triangle " + std::to_string(i + 1) + " of those listed, of the " +
-                     group_word_ + " " + in_quotes(name_of(listed_.groups[i])) + place +
-                     ", is no face of a tet; the surfaces do not belong to this mesh: save both anew "
+    throw InputError(file_ + ": listed triangle " + std::to_string(i + 1) + ", of the " + group_word_ + " " +
+                     in_quotes(name_of(listed_.groups[i])) + place +
+                     ", is not a face of any tet; the surfaces do not belong to this mesh: save both again "
                      "from one mesh, or leave the triangles out");
   }
 
@@ -196,7 +196,7 @@ class TriangleTaker {
     if (numbers.size() > max_groups)
       throw InputError(file_ + ": its triangles are in " + std::to_string(numbers.size()) + " " +
                        group_word_ + "s; at most " + std::to_string(max_groups) +
-                       " are possible: join some of them");
+                       " are possible: merge some of them");
     TetMesh& mesh = read_.mesh;
     mesh.interfaces = std::move(interfaces_);
     for (std::size_t f = 0; f < group_of_.size(); ++f) {
@@ -217,9 +217,9 @@ class TriangleTaker {
     add("boundary and interface triangles" +
             (groups == 0 ? "" : " of " + std::to_string(groups) + (groups == 1 ? " group" : " groups")),
         restored_, true);
-    add("triangles inside a material or of no tet", without_group_, false);
+    add("triangles inside a material or not on any tet", without_group_, false);
     add("triangles of " + group_word_ + "s inside a material", others_.size(), false);
-    add("triangles that are in a " + group_word_ + " already", repeated_, false);
+    add("triangles that are already in a " + group_word_, repeated_, false);
   }
 
   const FileTriangles& listed_;
@@ -243,8 +243,8 @@ void take_triangles(const FileTriangles& listed, const std::string& group_word, 
 
 std::string surface_expected(std::size_t tets) {
   return ": there are " + std::to_string(tets) +
-         " tets in it; it is a tet mesh, which 'tetwright simplify' and 'tetwright improve' take, and no "
-         "surface";
+         " tets in it; it is not a surface but a tet mesh, which 'tetwright simplify' and 'tetwright "
+         "improve' read";
 }
 
 TriangleMesh surface_of(const FileTriangles& listed, std::vector<Vec3> points, const std::string& file) {
@@ -264,7 +264,7 @@ TriangleMesh surface_of(const FileTriangles& listed, std::vector<Vec3> points, c
     surface.begin_group(known->second);
     const Triangle& t = listed.triangles[i];
     surface.add_polygon(std::array<std::int64_t, 3>{t[0], t[1], t[2]},
-                        [&] { return "triangle " + std::to_string(i + 1) + " of those listed"; });
+                        [&] { return "listed triangle " + std::to_string(i + 1); });
   }
   return surface.finish(nullptr, groups, listed.names.empty() ? 2 : 1);
 }

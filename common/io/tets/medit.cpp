@@ -110,7 +110,7 @@ class TextReader {
   }
 
   void check_has_vertices() const {
-    if (!has_vertices_) in_.fail("there is no section \"Vertices\" in it; the file is cut short");
+    if (!has_vertices_) in_.fail("there is no section \"Vertices\" in it; the file is truncated");
   }
 
   void read_sections() {
@@ -191,7 +191,7 @@ class TextReader {
 
   [[noreturn]] void fail_face(std::int64_t index, std::size_t line) const {
     throw InputError(in_.name(), line,
-                     "a face names point " + std::to_string(index) +
+                     "a face refers to point " + std::to_string(index) +
                          (has_vertices_ ? " of " + std::to_string(result_.mesh.points.size()) : "") +
                          " (counted from 1); export the file again");
   }
@@ -242,7 +242,7 @@ class TextReader {
       for (Index& vertex : mesh.tets[t]) {
         const std::int64_t index = in_.integer("index of a point");
         if (index < 1 || index >= no_index || (has_vertices_ && index > std::ssize(mesh.points)))
-          in_.fail("tet " + std::to_string(t + 1) + " names point " + std::to_string(index) + " of " +
+          in_.fail("tet " + std::to_string(t + 1) + " refers to point " + std::to_string(index) + " of " +
                    std::to_string(mesh.points.size()) + " (counted from 1); export the file again");
         vertex = static_cast<Index>(index - 1);
       }
@@ -259,7 +259,7 @@ class TextReader {
     for (std::size_t t = 0; t < mesh.tets.size(); ++t)
       for (Index vertex : mesh.tets[t])
         if (vertex >= mesh.points.size())
-          in_.fail("tet " + std::to_string(t + 1) + " names point " +
+          in_.fail("tet " + std::to_string(t + 1) + " refers to point " +
                    std::to_string(std::uint64_t{vertex} + 1) + " of " + std::to_string(mesh.points.size()) +
                    " (counted from 1); export the file again");
   }

@@ -79,7 +79,7 @@ class BinaryReader {
   template <class Number>
   Number next(const char* what) {
     if (bytes_.size() - position_ < sizeof(Number))
-      fail("the file ends where a " + std::string(what) + " was expected; it is cut short");
+      fail("the file ends where a " + std::string(what) + " was expected; it is truncated");
     const auto value = load<Number>(bytes_.data() + position_, swap_);
     position_ += sizeof(Number);
     return value;
@@ -103,10 +103,10 @@ class BinaryReader {
     swap_ = one != 1;
     position_ = 0;
     if (next<std::int32_t>("number 1") != 1)
-      throw InputError(name_ + ": byte 0: a 1 as four bytes was expected; this is no binary Medit mesh");
+      throw InputError(name_ + ": byte 0: expected the four-byte number 1; this is not a binary Medit mesh");
     version_ = next<std::int32_t>("version");
     if (version_ < 1 || version_ > 4)
-      throw InputError(name_ + ": byte 4: version " + std::to_string(version_) + "; 1 to 4 are known");
+      throw InputError(name_ + ": byte 4: version " + std::to_string(version_) + "; 1 to 4 are supported");
   }
 
   /// Reads a section.
@@ -119,8 +119,8 @@ class BinaryReader {
     const std::int64_t after = position("position of the next section");
     if (after != 0 &&
         (after < static_cast<std::int64_t>(position_) || after > static_cast<std::int64_t>(bytes_.size())))
-      fail("section " + std::to_string(keyword) + " goes on to byte " + std::to_string(after) + " of " +
-           std::to_string(bytes_.size()) + "; the file is cut short or damaged");
+      fail("section " + std::to_string(keyword) + " extends to byte " + std::to_string(after) + " of " +
+           std::to_string(bytes_.size()) + "; the file is truncated or damaged");
     if (keyword == dimension_keyword)
       read_dimension();
     else if (keyword == vertices_keyword)
@@ -146,7 +146,7 @@ class BinaryReader {
     const std::size_t each = numbers_each * (version_ >= 4 ? 8 : 4);
     if (n < 0 || static_cast<std::uint64_t>(n) > (bytes_.size() - position_) / each)
       fail("the " + std::string(what) + " is " + std::to_string(n) + ", but only " +
-           std::to_string(bytes_.size() - position_) + " bytes follow; the file is cut short or damaged");
+           std::to_string(bytes_.size() - position_) + " bytes follow; the file is truncated or damaged");
     return static_cast<std::size_t>(n);
   }
 
@@ -165,7 +165,7 @@ class BinaryReader {
   /// Reads an index, which is checked once all points are read.
   Index index(const char* what) {
     const std::int64_t i = integer(what);
-    if (i < 1 || i >= no_index) fail("the index of a point is " + std::to_string(i) + "; they begin at 1");
+    if (i < 1 || i >= no_index) fail("the index of a point is " + std::to_string(i) + "; indices begin at 1");
     largest_ = std::max(largest_, static_cast<std::size_t>(i));
     return static_cast<Index>(i - 1);
   }
@@ -211,7 +211,7 @@ class BinaryReader {
     if (mesh.tets.empty())
       throw InputError(name_ + ": there are no tets in it; a tet mesh is needed, not a surface");
     if (largest_ > mesh.points.size())
-      throw InputError(name_ + ": an element names point " + std::to_string(largest_) + " of " +
+      throw InputError(name_ + ": an element refers to point " + std::to_string(largest_) + " of " +
                        std::to_string(mesh.points.size()) + " (counted from 1); export the file again");
   }
 

@@ -53,12 +53,12 @@ MeshField read_msh_data(TextScanner& in, const MshNumbers& like, const std::stri
   const std::size_t integers = in.count("number of integer tags", 2);
   if (integers < 3)
     in.fail("field " + in_quotes(field.name) + " has " + std::to_string(integers) +
-            " integer tags; its components and its number of values are missing");
+            " integer tags; its numbers of components and values are missing");
   (void)in.integer("time step");
   const std::int64_t components = in.integer("number of components");
   if (components < 1 || components > max_components)
     in.fail("field " + in_quotes(field.name) + " has " + std::to_string(components) +
-            " components; 1, 3 and 9 are known");
+            " components; 1, 3 and 9 are supported");
   const auto per_item = static_cast<std::size_t>(components);
   const std::int64_t promised = in.integer("number of rows");
   for (std::size_t i = 3; i < integers; ++i) (void)in.integer("integer tag");

@@ -63,7 +63,7 @@ void MshReader::read_sections() {
     else
       keep_or_skip(section);
   }
-  if (!has_elements_) in_.fail("there is no section $Elements in it; the file is cut short");
+  if (!has_elements_) in_.fail("there is no section $Elements in it; the file is truncated");
   others_.refuse_volumes(in_.name());
 }
 
@@ -78,17 +78,17 @@ void MshReader::read_format() {
              " of the format is not supported; save it as version 2.2, 4.0 or 4.1 (gmsh -format msh41)");
   const std::int64_t type = in_.integer("type of the file");
   if (type != 0 && type != 1)
-    in_.fail("the type of the file is " + std::to_string(type) + "; 0 (ASCII) and 1 (binary) are known");
+    in_.fail("the type of the file is " + std::to_string(type) + "; 0 (ASCII) and 1 (binary) are supported");
   const std::int64_t size = in_.integer("size of a number");
   if (type == 1) {
     if (size != 8 && !(size == 4 && version_4_))
-      in_.fail("numbers of " + std::to_string(size) + " bytes; 8 are known");
+      in_.fail("numbers of " + std::to_string(size) + " bytes; 8 are supported");
     in_.skip_line();
     const std::string_view one = in_.take_bytes(sizeof(std::int32_t));
-    if (one.size() < sizeof(std::int32_t)) in_.fail_cut_short("number 1, which tells the order of bytes");
+    if (one.size() < sizeof(std::int32_t)) in_.fail_cut_short("number 1, which gives the byte order");
     const bool as_is = load<std::int32_t>(one.data(), false) == 1;
     if (!as_is && load<std::int32_t>(one.data(), true) != 1)
-      in_.fail("a 1 as four bytes was expected, which tells their order; the file is damaged");
+      in_.fail("expected the four-byte number 1, which gives the byte order; the file is damaged");
     numbers_.set_binary(!as_is, static_cast<std::size_t>(size));
   }
   expect("$EndMeshFormat");
@@ -223,10 +223,10 @@ void MshReader::note_dropped() {
   for (const auto& volume : volumes_) physical.insert(volume.first);
   if (result_.material_field == "gmsh:physical" && volumes_.size() > physical.size())
     dropped.push_back(
-        {"numbers of volumes within the physical groups; --material-field gmsh:geometrical takes them as "
+        {"numbers of volumes within the physical groups; --material-field gmsh:geometrical uses them as "
          "materials",
          volumes_.size()});
-  if (partitioned_ > 0) dropped.push_back({"tets with numbers of partitions", partitioned_});
+  if (partitioned_ > 0) dropped.push_back({"tets with partition numbers", partitioned_});
   append_dropped_names(dropped, "fields without a value", empty_fields_);
   append_dropped_names(dropped, "fields of elements other than tets", fields_of_others_);
   append_dropped_names(dropped, "sections", other_sections_);

@@ -87,7 +87,7 @@ class MshReader {
       const std::int64_t node = read_node(what);
       vertex = nodes_.find(node);
       if (needed && vertex == no_index)
-        in_.fail("element " + std::to_string(element) + " names node " + std::to_string(node) +
+        in_.fail("element " + std::to_string(element) + " refers to node " + std::to_string(node) +
                  ", which is not in $Nodes; export the file again");
     }
     return ids;

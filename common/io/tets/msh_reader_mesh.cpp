@@ -74,7 +74,7 @@ void MshReader::read_nodes_4() {
       in_.fail("the flag of parametric nodes is 0 or 1, not " + std::to_string(parametric));
     const std::size_t in_block = numbers_.count("number of nodes", 8, 28);
     if (in_block > n - result_.mesh.points.size())
-      in_.fail("the blocks have more nodes than the " + std::to_string(n) + " that $Nodes promises");
+      in_.fail("the blocks have more nodes than the " + std::to_string(n) + " that $Nodes gives");
     const auto read_place = [&] {
       result_.mesh.points.push_back(read_point());
       for (std::int64_t k = 0; k < dimension * parametric; ++k) (void)numbers_.number("parameter of a node");
@@ -91,7 +91,7 @@ void MshReader::read_nodes_4() {
   }
   if (result_.mesh.points.size() != n)
     in_.fail("the blocks have " + std::to_string(result_.mesh.points.size()) + " nodes, but " +
-             std::to_string(n) + " were promised; the file is damaged");
+             std::to_string(n) + " were expected; the file is damaged");
   sort_by(order, result_.mesh.points);
   for (const std::int64_t number : order) nodes_.add(number);
   end_nodes();
@@ -113,7 +113,7 @@ MshReader::EntityName MshReader::read_entity() {
     }
     entity.dimension = numbers_.integer("dimension of an entity");
     if (entity.dimension < 0 || entity.dimension > 3)
-      in_.fail("dimension " + std::to_string(entity.dimension) + " of an entity; 0 to 3 are known");
+      in_.fail("dimension " + std::to_string(entity.dimension) + " of an entity; 0 to 3 are possible");
   }
   return entity;
 }
@@ -227,7 +227,7 @@ void MshReader::read_elements_2() {
     }
     if (!numbers_.binary()) in_.skip_line();
   }
-  if (in_block > 0) in_.fail("the last block has more elements than $Elements promises; it is damaged");
+  if (in_block > 0) in_.fail("the last block has more elements than $Elements gives; it is damaged");
   expect("$EndElements");
   end_elements();
 }
@@ -245,7 +245,7 @@ void MshReader::read_elements_4() {
     const std::int64_t type = numbers_.integer("type of an element");
     const std::size_t in_block = numbers_.count("number of elements", 4, 8);
     if (in_block > n - done)
-      in_.fail("the blocks have more elements than the " + std::to_string(n) + " that $Elements promises");
+      in_.fail("the blocks have more elements than the " + std::to_string(n) + " that $Elements gives");
     done += in_block;
     const auto& groups = entity_to_group_[static_cast<std::size_t>(dimension)];
     const auto found = groups.find(entity);
@@ -270,7 +270,7 @@ void MshReader::read_elements_4() {
   }
   if (done != n)
     in_.fail("the blocks have " + std::to_string(done) + " elements, but " + std::to_string(n) +
-             " were promised; the file is damaged");
+             " were expected; the file is damaged");
   expect("$EndElements");
   end_elements();
 }

@@ -94,7 +94,7 @@ NameRules nastran_names() {
 
 void write_nastran(const MeshToWrite& written, const ByteSink& sink) {
   if (static_cast<std::int64_t>(std::max(written.nodes(), written.mesh.tets.size())) > max_number)
-    throw OutputError("a Nastran file has no room for numbers of more than eight digits, and there are " +
+    throw OutputError("a Nastran file cannot hold numbers of more than eight digits, but there are " +
                       std::to_string(std::max(written.nodes(), written.mesh.tets.size())) +
                       " nodes or tets; write another format");
   const MeshParts parts = mesh_parts(written.mesh, nastran_names());

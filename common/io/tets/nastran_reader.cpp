@@ -97,7 +97,7 @@ class NastranReader {
       if (words.starts_with("BEGINBULK")) continue;
       if (words.starts_with("ENDDATA")) break;
       if (words.starts_with("INCLUDE"))
-        fail(line, "INCLUDE is not followed; name the file that has the mesh");
+        fail(line, "INCLUDE is not supported; give the file that has the mesh");
       read_line(text, line, entry);
     }
     take(entry);
@@ -200,8 +200,7 @@ class NastranReader {
     else if (entry.name == "BSURFS")
       read_surface(entry);
     else if (entry.name == "GRDSET" && !entry.field(1).empty() && entry.field(1) != "0")
-      fail(entry.line,
-           "GRDSET puts points into a coordinate system of their own; export them in the basic one");
+      fail(entry.line, "GRDSET puts points into another coordinate system; export them in the basic one");
     else if (const auto volume = volume_entries.find(entry.name); volume != volume_entries.end()) {
       if (volumes_.empty()) volumes_line_ = entry.line;
       volumes_.add(volume->second);
@@ -248,8 +247,8 @@ class NastranReader {
   Index node(const Numbered& of, std::int64_t number) const {
     const Index index = nodes_.find(number);
     if (index == no_index)
-      fail(of.line, "element " + std::to_string(of.number) + " names point " + std::to_string(number) +
-                        ", which no GRID has; export the file again");
+      fail(of.line, "element " + std::to_string(of.number) + " refers to point " + std::to_string(number) +
+                        ", which no GRID defines; export the file again");
     return index;
   }
 

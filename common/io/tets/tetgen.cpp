@@ -57,8 +57,8 @@ class Lines {
   std::size_t checked(std::int64_t n, std::size_t words, const std::string& what) {
     if (n < 0) in_.fail("the number of " + what + " is negative: " + std::to_string(n));
     if (static_cast<std::uint64_t>(n) > (in_.left() + 1) / (2 * words))
-      in_.fail(std::to_string(n) + " " + what + " are promised, but only " + std::to_string(in_.left()) +
-               " bytes follow; the file is cut short or its header is wrong");
+      in_.fail("the header gives " + std::to_string(n) + " " + what + ", but only " +
+               std::to_string(in_.left()) + " bytes follow; the file is truncated or its header is wrong");
     return static_cast<std::size_t>(n);
   }
 
@@ -102,8 +102,8 @@ std::int64_t read_nodes(Lines& in, TetMesh& mesh) {
       first = number;
     }
     if (number - first != static_cast<std::int64_t>(i))
-      in.fail("point " + std::to_string(number) + " stands where point " +
-              std::to_string(first + static_cast<std::int64_t>(i)) + " was expected");
+      in.fail("found point " + std::to_string(number) + " instead of point " +
+              std::to_string(first + static_cast<std::int64_t>(i)));
     for (int k = 0; k < 3; ++k) {
       mesh.points[i][k] = in.next<double>("coordinate");
       if (!std::isfinite(mesh.points[i][k]))
@@ -125,7 +125,7 @@ MidsideNodesRead read_tets(Lines& in, std::int64_t first, ReadTetMesh& read) {
   const auto promised = in.next<std::int64_t>("number of tets");
   const auto corners = in.next<std::int64_t>("number of points of a tet");
   if (corners != 4 && corners != 10)
-    in.fail("tets of " + std::to_string(corners) + " points; there are 4, or 10 in a quadratic one");
+    in.fail("tets of " + std::to_string(corners) + " points; 4 or 10 are supported");
   const std::int64_t attributes = in.optional_count("number of attributes", max_attributes);
   in.end_line();
   const std::size_t n = in.checked(promised, static_cast<std::size_t>(1 + corners + attributes), "tets");
@@ -139,8 +139,8 @@ MidsideNodesRead read_tets(Lines& in, std::int64_t first, ReadTetMesh& read) {
     const auto read_index = [&](Index& vertex) {
       const auto point = in.next<std::int64_t>("number of a point");
       if (point < first || point - first >= std::ssize(mesh.points))
-        in.fail("tet " + std::to_string(number) + " names point " + std::to_string(point) +
-                ", but those of the .node file are " + std::to_string(first) + " to " +
+        in.fail("tet " + std::to_string(number) + " refers to point " + std::to_string(point) +
+                ", but the .node file has points " + std::to_string(first) + " to " +
                 std::to_string(first + std::ssize(mesh.points) - 1) + "; do the files belong together?");
       vertex = static_cast<Index>(point - first);
     };
@@ -191,8 +191,8 @@ FileTriangles read_faces(Lines& in, std::int64_t first, std::size_t points, bool
     for (Index& id : ids) {
       const auto point = in.next<std::int64_t>("number of a point");
       if (point < first || static_cast<std::uint64_t>(point - first) >= points)
-        in.fail("face " + std::to_string(number) + " names point " + std::to_string(point) +
-                ", but those of the .node file are " + std::to_string(first) + " to " +
+        in.fail("face " + std::to_string(number) + " refers to point " + std::to_string(point) +
+                ", but the .node file has points " + std::to_string(first) + " to " +
                 std::to_string(first + static_cast<std::int64_t>(points) - 1) +
                 "; do the files belong together?");
       id = static_cast<Index>(point - first);

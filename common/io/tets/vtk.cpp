@@ -44,7 +44,7 @@ class VtkReader final : private VtkSections {
     if (lower_case(word) == "unstructured_grid") return;
     in_.fail("a dataset UNSTRUCTURED_GRID is needed, this one is " + in_quotes(word) +
              (lower_case(word) == "polydata"
-                  ? "; it is a surface, which 'tetwright prepare' and 'tetwright mesh' take"
+                  ? "; it is a surface, which 'tetwright prepare' and 'tetwright mesh' read"
                   : ""));
   }
 
@@ -72,7 +72,7 @@ class VtkReader final : private VtkSections {
   void choose_tets() {
     if (chosen_) return;
     chosen_ = true;
-    if (!has_cells_ || !has_types_) in_.fail("there are no CELLS or no CELL_TYPES in it; it is cut short");
+    if (!has_cells_ || !has_types_) in_.fail("there are no CELLS or no CELL_TYPES in it; it is truncated");
     if (types_.size() != cells_.count())
       in_.fail("CELL_TYPES has " + std::to_string(types_.size()) + " types for " +
                std::to_string(cells_.count()) + " cells; the file is damaged");

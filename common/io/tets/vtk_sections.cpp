@@ -40,7 +40,7 @@ std::string decoded(std::string_view name) {
 void VtkSections::read_sections(std::vector<Dropped>& dropped) {
   read_head();
   for (std::string_view word; !(word = in_.word()).empty();) read_part(lower_case(word), word);
-  if (!has_points_) in_.fail("there are no POINTS in it; the file is cut short");
+  if (!has_points_) in_.fail("there are no POINTS in it; the file is truncated");
   append_dropped_names(dropped, "arrays of the whole dataset", dataset_arrays_);
   append_dropped_names(dropped, "arrays of text", text_arrays_);
   append_dropped_names(dropped, "arrays of colours", colours_);
@@ -58,7 +58,7 @@ void VtkSections::read_head() {
                      "expected \"# vtk DataFile Version\" at the beginning, found " + in_quotes(first) +
                          "; is this a legacy VTK file?");
   if (version[0] < '1' || version[0] > '5' || (version.size() > 1 && version[1] != '.'))
-    throw InputError(in_.name(), 1, "version " + in_quotes(version) + " of the format; 1 to 5 are known");
+    throw InputError(in_.name(), 1, "version " + in_quotes(version) + " of the format; 1 to 5 are supported");
   in_.skip_line();  // the title
   const std::string_view kind = in_.word();
   binary_ = lower_case(kind) == "binary";
@@ -98,8 +98,8 @@ void VtkSections::read_points() {
   std::vector<Vec3>& points = points_;
   if (!binary_) {
     if (n > (in_.left() + 1) / 6)
-      in_.fail(std::to_string(n) + " points are promised, but only " + std::to_string(in_.left()) +
-               " bytes follow; the file is cut short or its header is wrong");
+      in_.fail("the header gives " + std::to_string(n) + " points, but only " + std::to_string(in_.left()) +
+               " bytes follow; the file is truncated or its header is wrong");
     points.resize(n);
     for (Vec3& p : points)
       for (int k = 0; k < 3; ++k) p[k] = in_.coordinate();
@@ -132,8 +132,8 @@ VtkSections::Cells VtkSections::read_cells(const std::string& keyword, TextScann
     std::int64_t last = 0;
     for (std::int64_t offset : cells.offsets_) {
       if (offset < last || offset > std::ssize(cells.points_))
-        in_.fail("an offset of the cells is " + std::to_string(offset) + " after " + std::to_string(last) +
-                 ", of " + std::to_string(cells.points_.size()) + "; the file is damaged");
+        in_.fail("cell offset " + std::to_string(offset) + " follows " + std::to_string(last) + ", with " +
+                 std::to_string(cells.points_.size()) + " indices in all; the file is damaged");
       last = offset;
     }
     if (!cells.offsets_.empty() && cells.offsets_[0] != 0)
@@ -149,13 +149,13 @@ VtkSections::Cells VtkSections::read_cells(const std::string& keyword, TextScann
   for (std::size_t c = 0; c < n; ++c) {
     if (at >= size || cells.points_[at] < 0 || static_cast<std::uint64_t>(cells.points_[at]) >= size - at)
       fail_at(begin, at,
-              "cell " + std::to_string(c) + " (counted from 0) goes beyond the " + std::to_string(size) +
+              "cell " + std::to_string(c) + " (counted from 0) extends beyond the " + std::to_string(size) +
                   " numbers of " + keyword + "; the file is damaged");
     cells.offsets_.push_back(static_cast<std::int64_t>(at + 1));
     at += 1 + static_cast<std::size_t>(cells.points_[at]);
   }
   if (at != size)
-    in_.fail("the cells take " + std::to_string(at) + " numbers, but " + keyword + " promises " +
+    in_.fail("the cells use " + std::to_string(at) + " numbers, but " + keyword + " gives " +
              std::to_string(size) + "; the file is damaged");
   cells.offsets_.push_back(static_cast<std::int64_t>(at + 1));
   return cells;
@@ -180,7 +180,7 @@ Index VtkSections::checked_point(const Cells& cells, std::size_t cell, std::size
   const std::int64_t point = cells.point(place);
   if (point < 0 || static_cast<std::uint64_t>(point) >= points_.size())
     fail_at(begin, place,
-            "cell " + std::to_string(cell) + " (counted from 0) names point " + std::to_string(point) +
+            "cell " + std::to_string(cell) + " (counted from 0) refers to point " + std::to_string(point) +
                 " of " + std::to_string(points_.size()) + "; export the file again");
   return static_cast<Index>(point);
 }

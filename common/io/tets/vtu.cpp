@@ -132,8 +132,8 @@ class VtuReader {
     for (std::size_t c = 0; c < cell_count; ++c) {
       const std::size_t end = offsets[c];
       if (end < begin || end > connectivity.size())
-        data_.fail(offsets_node, "cell " + std::to_string(c) + " ends at " + std::to_string(end) + " of " +
-                                     std::to_string(connectivity.size()) + "; the file is damaged");
+        data_.fail(offsets_node, "cell " + std::to_string(c) + " ends at index " + std::to_string(end) +
+                                     " of " + std::to_string(connectivity.size()) + "; the file is damaged");
       if (c < ghost.size() && (ghost[c] & duplicate_cell)) {
         ++ghost_cells_;
       } else if (is_vtk_tet(types[c])) {
@@ -145,8 +145,9 @@ class VtuReader {
         for (std::size_t k = 0; k < nodes; ++k) {
           const std::uint32_t id = connectivity[begin + k];
           if (id >= points)
-            data_.fail(connectivity_node, "cell " + std::to_string(c) + " names point " + std::to_string(id) +
-                                              " of " + std::to_string(points) + "; export the file again");
+            data_.fail(connectivity_node, "cell " + std::to_string(c) + " refers to point " +
+                                              std::to_string(id) + " of " + std::to_string(points) +
+                                              "; export the file again");
           ids[k] = first_point + id;
         }
         result_.mesh.tets.push_back({ids[0], ids[1], ids[2], ids[3]});
@@ -249,11 +250,11 @@ class VtuReader {
         if (is_array(node) && !holds_numbers(node)) text.push_back(name_of(node));
     append_dropped_names(result_.dropped, "arrays of the whole dataset", of_dataset);
     append_dropped_names(result_.dropped, "arrays of text", text);
-    append_dropped_names(result_.dropped, "fields that not all pieces have", field_names_of_some_pieces_);
+    append_dropped_names(result_.dropped, "fields missing from some pieces", field_names_of_some_pieces_);
     if (ghost_cells_ > 0)
-      result_.dropped.push_back({"cells that other pieces have, too (vtkGhostType)", ghost_cells_});
+      result_.dropped.push_back({"cells that also belong to other pieces (vtkGhostType)", ghost_cells_});
     if (joined_points_ > 0)
-      result_.dropped.push_back({"points of several pieces at one place but for the first", joined_points_});
+      result_.dropped.push_back({"duplicate points shared between pieces", joined_points_});
   }
 
   VtuData data_;

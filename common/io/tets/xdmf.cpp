@@ -109,12 +109,12 @@ class XdmfReader {
         double value = 0;
         if (!parse_number(word, value)) fail(item, "expected a number, found " + in_quotes(word));
         if (values.size() == max_count)
-          fail(item, "more than the " + std::to_string(max_count) + " numbers that were expected");
+          fail(item, "more than the " + std::to_string(max_count) + " numbers expected");
         values.push_back(value);
       }
       return values;
     }
-    if (format != "HDF") fail(item, "format " + in_quotes(format) + "; XML and HDF are known");
+    if (format != "HDF") fail(item, "format " + in_quotes(format) + "; XML and HDF are supported");
     const std::size_t begin = text.find_first_not_of(" \t\r\n"), end = text.find_last_not_of(" \t\r\n");
     const std::size_t colon = text.rfind(':');
     if (begin == std::string::npos || colon == std::string::npos || colon <= begin)
@@ -167,7 +167,7 @@ class XdmfReader {
   Index index_of(pugi::xml_node topology, const char* what, std::size_t number, double value,
                  std::size_t points) const {
     if (!(value >= 0 && value < static_cast<double>(points)) || value != std::floor(value))
-      fail(topology, std::string(what) + " " + std::to_string(number) + " names point " +
+      fail(topology, std::string(what) + " " + std::to_string(number) + " refers to point " +
                          short_number(value) + " of " + std::to_string(points) + "; export the file again");
     return static_cast<Index>(value);
   }
@@ -234,7 +234,7 @@ class XdmfReader {
   void read_facets(const NamedBytes& file, FileTriangles& listed) {
     XdmfReader reader(file.bytes, file.name, read_file_);
     if (!reader.list_facets(result_.mesh.points.size(), listed))
-      result_.dropped.push_back({"facet files of other points (" +
+      result_.dropped.push_back({"facet files for other points (" +
                                      in_quotes(std::filesystem::path(file.name).filename().string()) + ")",
                                  1});
   }
@@ -260,7 +260,7 @@ class XdmfReader {
       const double tag = numbers_of[i];
       if (tag != std::floor(tag) || std::fabs(tag) > max_exact_whole)
         fail(tags, "the tag of triangle " + std::to_string(i) + " is " + short_number(tag) +
-                       ", which is no whole number");
+                       ", which is not a whole number");
       listed.add(triangle, static_cast<std::int64_t>(tag));
     }
     listed.names = names_of(grid, "2");

@@ -138,14 +138,14 @@ std::size_t TextScanner::count(std::string_view what, std::size_t bytes_each) {
   // The last item may lack trailing white space.
   if (n > (left() + 1) / bytes_each)
     fail("the " + std::string(what) + " is " + std::to_string(n) + ", but only " + std::to_string(left()) +
-         " bytes follow; the file is cut short or its header is wrong");
+         " bytes follow; the file is truncated or its header is wrong");
   return static_cast<std::size_t>(n);
 }
 
 void TextScanner::fail(const std::string& message) const { throw InputError(name_, line_, message); }
 
 void TextScanner::fail_cut_short(std::string_view what) const {
-  fail("the file ends where a " + std::string(what) + " was expected; it is cut short");
+  fail("the file ends where a " + std::string(what) + " was expected; it is truncated");
 }
 
 MaterialTag checked_material(std::int64_t value, const std::string& file, std::size_t line) {

@@ -19,7 +19,7 @@ DataFile read_data_file(const HeaderFields& header, const std::string& field, co
                            ") are not supported; save the volume as one file");
   // The name may contain anything, but the message must be one line of text.
   for (const char c : named)
-    if (static_cast<unsigned char>(c) < ' ') header.fail(field, in_quotes(named) + " is no name of a file");
+    if (static_cast<unsigned char>(c) < ' ') header.fail(field, in_quotes(named) + " is not a file name");
   DataFile data;
   data.path = (std::filesystem::path(header.file()).parent_path() / std::string(named)).string();
   try {

@@ -23,7 +23,7 @@ std::string HeaderFields::any_of(std::initializer_list<const char*> names) const
 const HeaderFields::Field& HeaderFields::find(const std::string& field) const {
   const auto at = fields_.find(field);
   if (at == fields_.end())
-    throw InputError(file_ + ": the header has no line " + in_quotes(field) + "; it is damaged or cut short");
+    throw InputError(file_ + ": the header has no line " + in_quotes(field) + "; it is damaged or truncated");
   return at->second;
 }
 
@@ -73,8 +73,8 @@ std::vector<double> HeaderFields::numbers(const std::string& field, std::size_t 
     out.push_back(value);
   }
   if (out.size() != count)
-    fail(field, std::to_string(out.size()) + " numbers as " + field + ", " + std::to_string(count) +
-                    (count == 1 ? " is" : " are") + " needed");
+    fail(field, "expected " + std::to_string(count) + (count == 1 ? " number" : " numbers") + " as " + field +
+                    ", found " + std::to_string(out.size()));
   return out;
 }
 

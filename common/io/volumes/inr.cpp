@@ -35,7 +35,7 @@ std::string read_header_bytes(ByteSource& source) {
     }
     const std::string_view next = source.take(block_size);
     if (next.empty() || header.size() >= max_header_size)
-      throw InputError(source.name() + ": the header has no end \"##}\"; the file is cut short or damaged");
+      throw InputError(source.name() + ": the header has no end \"##}\"; the file is truncated or damaged");
     header += next;
   }
 }
@@ -91,8 +91,8 @@ VoxelFormat voxel_format(const HeaderFields& header) {
     const std::string cpu = header.lower_text("cpu");
     const bool little = cpu == "decm" || cpu == "alpha" || cpu == "pc";
     if (!little && cpu != "sun" && cpu != "sgi")
-      header.fail(
-          "cpu", "unknown CPU " + in_quotes(header.text("cpu")) + "; known are decm, alpha, pc, sun and sgi");
+      header.fail("cpu", "unknown CPU " + in_quotes(header.text("cpu")) +
+                             "; supported: decm, alpha, pc, sun and sgi");
     format.swap = little != little_endian_machine;
   }
   return format;
@@ -115,12 +115,13 @@ LabelVolume read_inr(std::string_view bytes, const std::string& name) {
     if (header.has(spacing_names[k])) volume.directions(axis, axis) = header.number(spacing_names[k]);
     if (header.has(origin_names[k])) volume.origin[axis] = header.number(origin_names[k]);
     if (header.has(turn_names[k]) && header.number(turn_names[k]) != 0)
-      header.fail(turn_names[k], "a turned volume (" + in_quotes(header.text(turn_names[k])) +
+      header.fail(turn_names[k], "a rotated volume (" + in_quotes(header.text(turn_names[k])) +
                                      ") is not supported; save it as NRRD or NIfTI");
   }
   if (header.has("vdim"))
     if (const std::int64_t n = header.integer("vdim"); n != 1)
-      header.fail("vdim", std::to_string(n) + " numbers a voxel; a volume with one label a voxel is needed");
+      header.fail("vdim",
+                  std::to_string(n) + " numbers per voxel; a volume with one label per voxel is needed");
   volume.size = checked_size(sizes, name, header.line("xdim"));
   check_geometry(volume, name);
   volume.labels = read_voxels(source, voxel_format(header), volume.size);

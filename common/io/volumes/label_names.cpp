@@ -114,7 +114,7 @@ std::string name_of(const Line& line, const std::string& file) {
 std::map<MaterialTag, std::string> parse_label_names(std::string_view bytes, const std::string& file,
                                                      std::map<MaterialTag, std::size_t>* line_numbers) {
   std::vector<Line> lines = split_lines(bytes, file);
-  if (lines.empty()) throw InputError(file, 0, "names no label; expected lines such as: 1 liver");
+  if (lines.empty()) throw InputError(file, 0, "lists no labels; expected lines such as: 1 liver");
   // A single line may match another form by chance ("3 rib 1 2 3 4"), but not all lines do.
   for (bool (*const drop_colour)(std::string_view&) : {drop_colour_behind, drop_colour_before}) {
     std::vector<Line> bare = lines;
@@ -133,7 +133,7 @@ std::map<MaterialTag, std::string> parse_label_names(std::string_view bytes, con
     if (!added && known->second != name)
       throw InputError(file, line.number,
                        "label " + std::to_string(tag) + " is called " + in_quotes(name) + ", and " +
-                           in_quotes(known->second) + " on a line before");
+                           in_quotes(known->second) + " on an earlier line");
     if (line_numbers && added) line_numbers->emplace(tag, line.number);
   }
   return names;

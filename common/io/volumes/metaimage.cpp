@@ -75,7 +75,7 @@ LabelVolume read_geometry(const HeaderFields& header) {
   if (header.has("elementnumberofchannels"))
     if (const std::int64_t n = header.integer("elementnumberofchannels"); n != 1)
       header.fail("elementnumberofchannels",
-                  std::to_string(n) + " channels; a volume with one label a voxel is needed");
+                  std::to_string(n) + " channels; a volume with one label per voxel is needed");
   LabelVolume volume;
   volume.size = checked_size(header.integers("dimsize"), header.file(), header.line("dimsize"));
   if (const std::string field = header.any_of({"offset", "position", "origin"}); header.has(field)) {
@@ -121,7 +121,7 @@ LabelVolume read_metaimage(std::string_view bytes, const std::string& name, cons
   const std::string_view whole = local ? bytes : std::string_view(file.bytes);
   std::string_view data = local ? bytes.substr(in.offset()) : whole;
   if (const std::int64_t skip = header.has("headersize") ? header.integer("headersize") : 0; skip == -1) {
-    if (packed || as_text) header.fail("headersize", "HeaderSize -1, which only raw data allow");
+    if (packed || as_text) header.fail("headersize", "HeaderSize -1 is allowed only for raw data");
     std::uint64_t needed = voxel_bytes(format.type);
     for (const int n : volume.size) needed *= static_cast<std::uint64_t>(n);
     if (needed < data.size()) data.remove_prefix(data.size() - static_cast<std::size_t>(needed));
@@ -129,7 +129,7 @@ LabelVolume read_metaimage(std::string_view bytes, const std::string& name, cons
     // Counted from the beginning of the file, which may be the header's or a separate one.
     if (skip < 0 || static_cast<std::uint64_t>(skip) > whole.size())
       header.fail("headersize",
-                  std::to_string(skip) + " bytes to be skipped of " + std::to_string(whole.size()));
+                  std::to_string(skip) + " bytes to skip, but the file has " + std::to_string(whole.size()));
     data = whole.substr(static_cast<std::size_t>(skip));
   }
   if (as_text) {

@@ -33,7 +33,7 @@ class NiftiHeader {
   NiftiHeader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {
     if (bytes_.empty()) fail("the file is empty");
     if (bytes_.size() < sizeof(std::int32_t))
-      fail("only " + std::to_string(bytes_.size()) + " bytes; it is cut short");
+      fail("only " + std::to_string(bytes_.size()) + " bytes; it is truncated");
     const auto size = load<std::int32_t>(bytes_.data(), false),
                other = load<std::int32_t>(bytes_.data(), true);
     const bool second = size == version_2.header_size || other == version_2.header_size;
@@ -43,14 +43,14 @@ class NiftiHeader {
     swap_ = size != layout_->header_size;
     if (bytes_.size() < header_size())
       fail("only " + std::to_string(bytes_.size()) + " bytes, but the header has " +
-           std::to_string(header_size()) + "; the file is cut short");
+           std::to_string(header_size()) + "; the file is truncated");
     const std::string_view magic = bytes_.substr(layout_->magic, 4);
     const std::string_view number = second ? "2" : "1";
     detached_ = magic == "ni" + std::string(number) + std::string(1, '\0');
     if (!detached_ && magic != "n+" + std::string(number) + std::string(1, '\0'))
       fail("expected \"n+" + std::string(number) + "\" at byte " + std::to_string(layout_->magic) +
            ", found " + in_quotes(magic) +
-           "; ANALYZE files say nothing of left and right, save the volume as NIfTI");
+           "; ANALYZE files do not define left and right; save the volume as NIfTI");
   }
 
   std::size_t header_size() const { return static_cast<std::size_t>(layout_->header_size); }
@@ -69,8 +69,8 @@ class NiftiHeader {
         sizes[static_cast<std::size_t>(k - 1)] = n;
       else if (n != 1)
         fail("dim[" + std::to_string(k) + "] is " + std::to_string(n) +
-             (k == 4 ? "; a volume of one moment is needed, save one of them"
-                     : "; a volume with one label a voxel is needed"));
+             (k == 4 ? "; a volume of a single time point is needed, save one of them"
+                     : "; a volume with one label per voxel is needed"));
     }
     return checked_size(sizes, name_, 0);
   }
@@ -264,7 +264,7 @@ LabelVolume read_nifti(std::string_view bytes, const std::string& name, const Fi
     const std::size_t between = header.offset() - taken;
     if (voxels.skip(between) < between)
       throw InputError(file + ": the voxels begin at byte " + std::to_string(header.offset()) + " of " +
-                       std::to_string(voxels.taken()) + "; the file is cut short");
+                       std::to_string(voxels.taken()) + "; the file is truncated");
     volume.labels = read_voxels(voxels, format, volume.size);
   };
   if (!header.detached()) {

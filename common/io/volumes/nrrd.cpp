@@ -259,7 +259,7 @@ class NrrdHeader {
     const std::int64_t dimension = fields_.integer("dimension");
     if (dimension < 3 || dimension > max_axes)
       fields_.fail("dimension",
-                   "dimension " + std::to_string(dimension) + "; a volume of labels has 3 axes of space");
+                   "dimension " + std::to_string(dimension) + "; a volume of labels has 3 spatial axes");
     axes_ = static_cast<std::size_t>(dimension);
     sizes_ = fields_.integers("sizes");
     need_one_each("sizes", sizes_.size());
@@ -302,7 +302,7 @@ class NrrdHeader {
       if (!is_spatial(a))
         fields_.fail("sizes", "axis " + std::to_string(a) + " (" + std::to_string(sizes_[a]) +
                                   " items of kind " + in_quotes(kinds_.empty() ? "none" : kinds_[a]) +
-                                  ") is not one of space; a volume with one label a voxel is needed");
+                                  ") is not a spatial axis; a volume with one label per voxel is needed");
     if (chosen_.size() != 3)
       fields_.fail("sizes",
                    std::to_string(chosen_.size()) +
@@ -346,8 +346,8 @@ class NrrdHeader {
       return space == "scanner-xyz" ? space : "3D" + space.substr(2);
     }
     fields_.fail("space", "space " + in_quotes(fields_.text("space")) +
-                              " is not supported; known are right-anterior-superior, left-anterior-superior, "
-                              "left-posterior-superior, scanner-xyz, 3D-right-handed and 3D-left-handed");
+                              " is not supported; use right-anterior-superior, left-anterior-superior, "
+                              "left-posterior-superior, scanner-xyz, 3D-right-handed or 3D-left-handed");
   }
 
   /// Whether the samples along an axis lie half a step inside the range of `axis mins` and `axis maxs`,
@@ -400,11 +400,10 @@ std::int64_t optional_integer(const HeaderFields& header, const std::string& fie
 std::size_t skip_lines(const HeaderFields& header, TextScanner& body) {
   const std::string field = header.any_of({"line skip", "lineskip"});
   const std::int64_t lines = optional_integer(header, field);
-  if (lines < 0) header.fail(field, std::to_string(lines) + " lines to be skipped");
+  if (lines < 0) header.fail(field, std::to_string(lines) + " lines to skip");
   for (std::int64_t i = 0; i < lines; ++i) {
     if (body.left() == 0)
-      header.fail(field,
-                  std::to_string(lines) + " lines to be skipped, but the data have " + std::to_string(i));
+      header.fail(field, std::to_string(lines) + " lines to skip, but the data have " + std::to_string(i));
     body.skip_line();
   }
   return body.offset();
@@ -455,11 +454,11 @@ LabelVolume read_nrrd(std::string_view bytes, const std::string& name, const Fil
   const std::string skip_field = header.any_of({"byte skip", "byteskip"});
   const std::int64_t skip = optional_integer(header, skip_field);
   if (skip < -1 || (skip == -1 && encoding != "raw"))
-    header.fail(skip_field, std::to_string(skip) + " bytes to be skipped" +
-                                (skip == -1 ? ", which only raw data allow" : ""));
+    header.fail(skip_field, std::to_string(skip) + " bytes to skip" +
+                                (skip == -1 ? ", which is allowed only for raw data" : ""));
   if (as_text) {
     if (body.take_bytes(static_cast<std::size_t>(skip)).size() < static_cast<std::size_t>(skip))
-      header.fail(skip_field, std::to_string(skip) + " bytes to be skipped, which are not there");
+      header.fail(skip_field, std::to_string(skip) + " bytes to skip, but the data are shorter");
     volume.labels = read_voxels_as_text(body, volume.size);
     return volume;
   }
@@ -471,8 +470,8 @@ LabelVolume read_nrrd(std::string_view bytes, const std::string& name, const Fil
   }
   ByteSource source(data, gzip ? ByteSource::Packing::deflate : ByteSource::Packing::none, file.path);
   if (skip > 0 && source.skip(static_cast<std::uint64_t>(skip)) < static_cast<std::uint64_t>(skip))
-    header.fail(skip_field, std::to_string(skip) + " bytes to be skipped, but the data have " +
-                                std::to_string(source.taken()));
+    header.fail(skip_field,
+                std::to_string(skip) + " bytes to skip, but the data have " + std::to_string(source.taken()));
   volume.labels = read_voxels(source, format, volume.size);
   return volume;
 }

@@ -107,7 +107,7 @@ std::string bad_voxel(std::size_t voxel, const std::array<int, 3>& size, const s
   const auto nx = static_cast<std::size_t>(size[0]), ny = static_cast<std::size_t>(size[1]);
   return "voxel (" + std::to_string(voxel % nx) + ", " + std::to_string(voxel / nx % ny) + ", " +
          std::to_string(voxel / nx / ny) + ") has the value " + value +
-         (whole ? ", which is no label of 32 bits; number the labels from 0"
+         (whole ? ", which is not a 32-bit label; number the labels from 0"
                 : ", not a whole number; a volume of labels is needed, not an image");
 }
 
@@ -150,9 +150,9 @@ std::vector<MaterialTag> read_voxels(ByteSource& body, const VoxelFormat& format
     throw InputError(body.name() + ": " + needs() +
                      (body.packed()
                           ? "the compressed data hold " + std::to_string(body.max_left()) +
-                                " at most; the file is cut short or its header is wrong"
+                                " at most; the file is truncated or its header is wrong"
                           : "only " + std::to_string(body.max_left()) +
-                                " follow the header; the file is cut short or its header is wrong"));
+                                " follow the header; the file is truncated or its header is wrong"));
   const std::uint64_t before = body.taken();
   std::vector<MaterialTag> labels;
   // Reserved pages use no memory until voxels are written to them.
@@ -163,7 +163,7 @@ std::vector<MaterialTag> read_voxels(ByteSource& body, const VoxelFormat& format
     const std::string_view bytes = body.take(wanted * each);
     if (bytes.size() < wanted * each)
       throw InputError(body.name() + ": " + needs() + "only " + std::to_string(body.taken() - before) +
-                       " are there; the file is cut short");
+                       " are there; the file is truncated");
     labels.resize(done + wanted);
     with_type(format.type, [&](auto number) {
       using Stored = decltype(number);
@@ -191,14 +191,14 @@ std::vector<MaterialTag> read_voxels_as_text(TextScanner& body, const std::array
   if (n > (body.left() + 1) / 2)
     body.fail("its " + text(size) + " voxels need " + std::to_string(2 * n - 1) +
               " bytes or more, but only " + std::to_string(body.left()) +
-              " follow; the file is cut short or its header is wrong");
+              " follow; the file is truncated or its header is wrong");
   std::vector<MaterialTag> labels(n);
   for (std::size_t i = 0; i < n; ++i) {
     const std::string_view word = body.word();
     double value = 0;
     if (word.empty())
       body.fail("the file ends after " + std::to_string(i) + " of " + std::to_string(n) +
-                " voxels; it is cut short");
+                " voxels; it is truncated");
     if (!parse_number(word, value)) body.fail("expected the number of a voxel, found " + in_quotes(word));
     if (!to_label(value, labels[i]))
       body.fail(bad_voxel(i, size, in_quotes(word), std::isfinite(value) && value == std::floor(value)));

@@ -48,7 +48,7 @@ TEST_F(Formats, VolumesAndTheirCompoundExtensions) {
   EXPECT_EQ(file_stem(".stl"), ".stl");
   const std::string message =
       error_of<UsageError>([&] { check_output_path(path("x.nii.gz"), FileKind::volume); });
-  EXPECT_NE(message.find("\".nii.gz\" can be read, not written, for a volume of labels; known are .nrrd"),
+  EXPECT_NE(message.find("\".nii.gz\" can be read, not written, for a volume of labels; supported: .nrrd"),
             std::string::npos)
       << message;
 }
@@ -130,10 +130,10 @@ TEST_F(Formats, AFormatThatAnotherKindHas) {
     return error_of<UsageError>([&] { check_output_path("-", kind, format); });
   };
   EXPECT_EQ(refusal(FileKind::volume, "ply"),
-            "there is no format \"ply\" for a volume of labels; known are .nrrd");
+            "there is no format \"ply\" for a volume of labels; supported: .nrrd");
   EXPECT_EQ(
       refusal(FileKind::surface, ".glb"),
-      "the format \".glb\" can be read, not written, for a surface; known are .ply .obj .stl .off .vtp");
+      "the format \".glb\" can be read, not written, for a surface; supported: .ply .obj .stl .off .vtp");
 }
 
 TEST_F(Formats, GroupsOfSurfaces) {
@@ -156,9 +156,9 @@ TEST_F(Formats, GroupsOfSurfaces) {
 
 TEST_F(Formats, UnknownExtensions) {
   const std::string in = error_of<UsageError>([&] { (void)read_surface(path("x.xyz")); });
-  EXPECT_NE(in.find("\".xyz\" for a surface; known are .ply .obj .stl .off"), std::string::npos) << in;
+  EXPECT_NE(in.find("\".xyz\" for a surface; supported: .ply .obj .stl .off"), std::string::npos) << in;
   const std::string out = error_of<UsageError>([&] { check_output_path(path("x")); });
-  EXPECT_NE(out.find("no extension for a tet mesh; known are .vtu .msh .mesh"), std::string::npos) << out;
+  EXPECT_NE(out.find("no extension for a tet mesh; supported: .vtu .msh .mesh"), std::string::npos) << out;
   // Formats of surfaces cannot hold a tet mesh.
   (void)error_of<UsageError>([&] { check_output_path(path("x.ply")); });
   (void)error_of<UsageError>([&] { check_output_path(path("x.vtu"), FileKind::surface); });

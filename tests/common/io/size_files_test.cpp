@@ -67,13 +67,12 @@ TEST_F(SizeFiles, WhichFieldIsNotClear) {
             "several of its point fields may be the edge length: \"a\", \"b\"; name one \"size\"");
   EXPECT_EQ(message(tet({v})),
             "no point field has one number for each point; there are \"v\"; add one named \"size\"");
+  EXPECT_EQ(message(tet({a, {"sizing", 3, false, std::vector<double>(12, 1)}})),
+            "its point field \"sizing\" has 3 numbers for each point, but an edge length is one number; give "
+            "it one, or rename it");
   EXPECT_EQ(
-      message(tet({a, {"sizing", 3, false, std::vector<double>(12, 1)}})),
-      "its point field \"sizing\" has 3 numbers for each point, and an edge length is one; give it one, or "
-      "another name");
-  EXPECT_EQ(message(tet({})),
-            "its points have no numbers; write the edge length wanted at each point as a point field named "
-            "\"size\"");
+      message(tet({})),
+      "it has no point fields; write the target edge length at each point as a point field named \"size\"");
 }
 
 TEST_F(SizeFiles, ValuesMustBeAboveZero) {
@@ -84,7 +83,7 @@ TEST_F(SizeFiles, ValuesMustBeAboveZero) {
         << bad;
   EXPECT_EQ(message(tet({{"size", 1, false, {1, 1, -0.25, 1}}})),
             "point 2 (counted from 0) has the value -0.25 in point field \"size\"; an edge length must be a "
-            "number above 0: give it one");
+            "number above 0: correct it");
   EXPECT_NE(
       message(ply("property float size", "0 0 0 1\n2 0 0 0\n0 2 0 1\n")).find("point 1 (counted from 0)"),
       std::string::npos);
@@ -98,8 +97,9 @@ TEST_F(SizeFiles, Ply) {
     EXPECT_NEAR(wanted->length, 1 + 0.5 + 2, 1e-12);
     EXPECT_NEAR(wanted->distance, 4, 1e-12);
   }
-  EXPECT_NE(message(ply("property list uchar int size", "0 0 0 0\n2 0 0 0\n0 2 0 0\n")).find("no numbers"),
-            std::string::npos);
+  EXPECT_NE(
+      message(ply("property list uchar int size", "0 0 0 0\n2 0 0 0\n0 2 0 0\n")).find("no point fields"),
+      std::string::npos);
 }
 
 TEST_F(SizeFiles, Vtp) {
@@ -141,8 +141,8 @@ TEST_F(SizeFiles, OtherExtensions) {
   const std::string known = "edge lengths are read from .vtu .msh .vtk .xdmf .node .ele .ply .vtp";
   EXPECT_EQ(message<UsageError>("a.txt"), "unknown extension \".txt\"; " + known);
   EXPECT_EQ(message<UsageError>("a"), "no extension; " + known);
-  EXPECT_EQ(message<UsageError>("a.stl"), "files \".stl\" have no numbers of points; " + known);
-  EXPECT_EQ(message<UsageError>("a.mesh"), "files \".mesh\" have no numbers of points; " + known);
+  EXPECT_EQ(message<UsageError>("a.stl"), "files \".stl\" have no point fields; " + known);
+  EXPECT_EQ(message<UsageError>("a.mesh"), "files \".mesh\" have no point fields; " + known);
   EXPECT_EQ(error_of<UsageError>([] { check_mesh_sizes_path("a.inr", ".vdb"); }),
             "a.inr: unknown extension \".inr\"; " + known + " .vdb");
   EXPECT_NO_THROW(check_mesh_sizes_path("a.PLY"));

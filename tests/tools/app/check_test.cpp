@@ -250,7 +250,7 @@ TEST(Check, TheOutsideThatIsKeptIsNotCompared) {
       0);
   const Answer a = run("check " + (f / "box.vtu") + " --tolerance 1% --surface " + (f / "box.off"));
   EXPECT_EQ(a.status, 0) << a.out;
-  EXPECT_NE(a.out.find("left out of what is compared with the surface: the "), std::string::npos) << a.out;
+  EXPECT_NE(a.out.find("not compared with the surface: the "), std::string::npos) << a.out;
   EXPECT_NE(a.out.find("of the surface 2; same components, handles and cavities"), std::string::npos)
       << a.out;
 }
@@ -261,8 +261,9 @@ TEST(Check, AnInvertedMeshIsNotAnotherSolid) {
   put(f / "tet.mesh", medit("1 3 2 4"));
   const Answer a = run("check " + (f / "tet.mesh") + " --tolerance 1% --surface " + (f / "tet.off"));
   EXPECT_EQ(a.status, 1);
-  for (const char* said : {"all tets are inverted; compared with the surface as if they were turned",
-                           "same components, handles and cavities", "\nwithin the tolerance"})
+  for (const char* said :
+       {"all tets are inverted; compared with the surface as if their orientation were reversed",
+        "same components, handles and cavities", "\nwithin the tolerance"})
     EXPECT_NE(a.out.find(said), std::string::npos) << a.out << "lacks: " << said;
 }
 
@@ -315,7 +316,7 @@ TEST(Check, AToleranceSmallerThanDistancesAreKnownIsRefused) {
   put(f / "tet.off", tetrahedron_off);
   put(f / "tet.mesh", medit("1 2 3 4"));
   expect_refused("check " + (f / "tet.mesh") + " --tolerance 1e-5 --surface " + (f / "tet.off"), 2,
-                 {"--tolerance 1e-05 is below what", "give 0.000173205 or more"});
+                 {"--tolerance 1e-05 is below the accuracy", "give 0.000173205 or more"});
 }
 
 TEST(Check, AToleranceNeedsASurface) {

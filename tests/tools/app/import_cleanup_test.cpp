@@ -109,12 +109,12 @@ TEST(ImportCleanup, MeshesOfOtherProgramsAreMadeCoherent) {
   EXPECT_EQ(run("check " + (f / "m.node")).status, 1);
   const Answer a = run("improve " + (f / "m.ele") + " -o " + (f / "out.vtu") + " --stats " + (f / "s.json"));
   EXPECT_LE(a.status, 1) << a.err;
-  EXPECT_NE(a.err.find("turned"), std::string::npos) << a.err;
+  EXPECT_NE(a.err.find("(corrected)"), std::string::npos) << a.err;
   std::map<std::string, std::size_t> counts;
   const auto stats = nlohmann::json::parse(contents(f / "s.json"));
   for (const auto& finding : stats["input"]["findings"]) counts[finding["what"]] = finding["count"];
   EXPECT_EQ(counts["points repeated for each tet"], 4 * mesh.tets.size() - mesh.points.size());
-  EXPECT_EQ(counts["tets listed the other way round"], mesh.tets.size() / 2);
+  EXPECT_EQ(counts["tets with reversed vertex order"], mesh.tets.size() / 2);
   EXPECT_EQ(counts.size(), 2u);
   EXPECT_EQ(run("check " + (f / "out.vtu")).status, 0);
   expect_refused("simplify " + (f / "m.ele") + " -o " + (f / "out.ply") + " --target-tets 10", 2,
@@ -122,7 +122,8 @@ TEST(ImportCleanup, MeshesOfOtherProgramsAreMadeCoherent) {
   // If all tets have a repeated vertex, no tet is left.
   put(f / "flat.node", "4 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n");
   put(f / "flat.ele", "2 4\n0 0 1 2 2\n1 3 1 3 2\n");
-  expect_refused("improve " + (f / "flat.node") + " -o " + (f / "x.vtu"), 3, {"flat.node", "vertex twice"});
+  expect_refused("improve " + (f / "flat.node") + " -o " + (f / "x.vtu"), 3,
+                 {"flat.node", "repeated vertex"});
 }
 
 }  // namespace

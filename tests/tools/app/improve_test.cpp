@@ -66,7 +66,7 @@ TEST(Improve, AnAngleThatCannotBeHadIsStatusOneAndWritten) {
   const Answer a = run("improve " + (f / "m.vtu") + " -o " + (f / "o.vtu") + " --min-solid-angle 0.55" +
                        " --max-iterations 2 --stats " + (f / "s.json"));
   EXPECT_EQ(a.status, 1) << a.err;
-  EXPECT_NE(a.err.find("--min-solid-angle: 0.55 was asked"), std::string::npos) << a.err;
+  EXPECT_NE(a.err.find("--min-solid-angle: 0.55 requested"), std::string::npos) << a.err;
   EXPECT_NE(a.err.find(" %"), std::string::npos) << a.err;
   EXPECT_EQ(std::count(a.err.begin(), a.err.end(), '\n'), 1) << a.err;
   EXPECT_EQ(json_of(f / "s.json")["shortfall"][0]["what"], "min_solid_angle");
@@ -123,7 +123,7 @@ TEST(Improve, WrongCallsAreStatusTwoAndSayWhatIsRight) {
     EXPECT_NE(a.err.find(said), std::string::npos) << a.err;
     EXPECT_EQ(std::count(a.err.begin(), a.err.end(), '\n'), 1) << a.err;
   };
-  refused("improve --objective best", "'best' is none of both, solid-angle, dihedral");
+  refused("improve --objective best", "'best' is not one of both, solid-angle, dihedral");
   refused("improve --only-below -1", "--only-below");
   refused("improve --only-below 2", "0.5513");
   refused("improve --only-below nan", "--only-below");
@@ -132,8 +132,8 @@ TEST(Improve, WrongCallsAreStatusTwoAndSayWhatIsRight) {
   refused("simplify --target-tets 100 --min-solid-angle nan", "--min-solid-angle");
   refused("improve --target-tets=5", "--target-tets");
   refused("improve --schedule=paper", "--schedule");
-  refused("simplify --target-tets 100 --schedule fast", "'fast' is none of tuned, paper");
-  refused("simplify --target-tets 100 --objective ''", "is none of both");
+  refused("simplify --target-tets 100 --schedule fast", "'fast' is not one of tuned, paper");
+  refused("simplify --target-tets 100 --objective ''", "is not one of both");
   refused("simplify --target-tets 385", "above the 384 tets");
   refused("simplify --target-tets 100 --only-below=0.1", "--only-below");
   EXPECT_EQ(run("improve " + (f / "m.vtu") + " -o " + (f / "o.xyz")).status, 2);
@@ -168,8 +168,8 @@ TEST(Simplify, ATargetThatTopologyForbidsSaysWhichRules) {
   const Answer a = run("simplify " + (f / "m.vtu") + " -o " + (f / "o.vtu") + " --target-tets 4 --stats " +
                        (f / "s.json"));
   EXPECT_EQ(a.status, 1) << a.err;
-  EXPECT_NE(a.err.find("short of --target-tets: 4 was asked"), std::string::npos) << a.err;
-  EXPECT_NE(a.err.find("held back by: "), std::string::npos) << a.err;
+  EXPECT_NE(a.err.find("short of --target-tets: 4 requested"), std::string::npos) << a.err;
+  EXPECT_NE(a.err.find("limited by: "), std::string::npos) << a.err;
   EXPECT_NE(a.err.find(" %"), std::string::npos) << a.err;
   const std::string rules = json_of(f / "s.json")["shortfall"][0]["held_back_by"];
   EXPECT_NE(a.err.find(rules), std::string::npos) << rules;

@@ -112,7 +112,7 @@ TEST_F(Limits, AToleranceIsComparedAlsoWhenTimeEnds) {
     EXPECT_LE(held["from_surface"]["lower"], held["distance"]) << a.err;
     EXPECT_EQ(held["held"], shortfall(j, "tolerance") == nullptr);
     if (!held["held"]) {
-      EXPECT_NE(a.err.find("--time-limit, which ended measuring it"), std::string::npos) << a.err;
+      EXPECT_NE(a.err.find("--time-limit, which ended the measurement"), std::string::npos) << a.err;
     }
     return;
   }

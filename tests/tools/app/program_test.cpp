@@ -147,8 +147,7 @@ TEST(Program, WhatAFileHoldsBesideTheMeshIsNamed) {
   ASSERT_EQ(run("sample two_materials -o " + (f / "two.msh")).status, 0);
   ASSERT_EQ(run("improve " + (f / "two.msh") + " -o " + (f / "better.msh") + " --quiet").status, 0);
   EXPECT_EQ(run("check " + (f / "better.msh") + " --json").err, "");
-  EXPECT_NE(run("check " + (f / "better.msh")).err.find("(found again from the materials)"),
-            std::string::npos);
+  EXPECT_NE(run("check " + (f / "better.msh")).err.find("(restored from the materials)"), std::string::npos);
   // Cells of other kinds are rejected, since they would be missing in the body.
   put(f / "hexa.mesh", head + tets + "Hexahedra\n1\n1 2 3 4 1 2 3 4 0\nEnd\n");
   expect_refused("check " + (f / "hexa.mesh"), 3,
@@ -331,7 +330,7 @@ TEST(Program, ShortOfTheTargetIsStatusOneAndWritten) {
   const Answer a = run("simplify " + (f / "d.vtu") + " -o " + (f / "s.vtu") + " --target-tets 3 --stats " +
                        (f / "s.json"));
   EXPECT_EQ(a.status, 1) << a.err;
-  EXPECT_NE(a.err.find("held back by"), std::string::npos) << a.err;
+  EXPECT_NE(a.err.find("limited by"), std::string::npos) << a.err;
   EXPECT_EQ(run("check " + (f / "s.vtu") + " --before " + (f / "d.vtu")).status, 0);
   EXPECT_EQ(nlohmann::json::parse(contents(f / "s.json"))["shortfall"][0]["what"], "target_tets");
   // A target above the mesh's number of tets.

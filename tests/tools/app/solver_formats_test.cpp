@@ -99,10 +99,10 @@ TEST_F(SolverFormats, WhatAFormatChangesIsSaid) {
   expect_said(bdf, "1 names of materials (changed, as .bdf cannot hold it: \"same\" -> \"same_2\")");
   expect_said(said("out.mesh"),
               "1 names of patches (changed, as .mesh cannot hold it: \"in let\" -> \"in_let\")");
-  expect_said(said("out.meshb"), "1 names of patches (not written; .meshb has no place for them");
+  expect_said(said("out.meshb"), "1 names of patches (not written; .meshb cannot hold them");
   EXPECT_EQ(said("out.meshb", "--boundary " + (f / "b.vtp")).find("names of patches"), std::string::npos);
   expect_said(said("out.meshb", "--boundary " + (f / "b.off")),
-              "1 names of patches (not written; .meshb has no place for them, nor has .off");
+              "1 names of patches (not written; .meshb cannot hold them, nor can .off");
   EXPECT_EQ(said("out.msh", "--boundary " + (f / "b.off")).find("patches"), std::string::npos);
   expect_said(said("out.msh", "--boundary " + (f / "b.obj")),
               "1 names of patches (changed, as .obj cannot hold it: \"in let\" -> \"in_let\")");

@@ -106,7 +106,7 @@ TEST(Streams, ThatCannotBe) {
   const TemporaryFolder f;
   const std::string output = " -o " + (f / "o.vtu");
   expect_refused("mesh -" + output, 2, {"--input-format", ".ply"});
-  expect_refused("mesh - - --input-format ply" + output, 2, {"one input"});
+  expect_refused("mesh - - --input-format ply" + output, 2, {"can be given once"});
   expect_refused("mesh - stdin --input-format ply" + output, 2, {"stdin", "another name"});
   expect_refused("mesh a.ply --input-format ply" + output, 2, {"--input-format"});
   expect_refused("mesh - --input-format jpeg" + output, 2, {"jpeg", ".ply"});

@@ -156,7 +156,7 @@ TEST_F(Volumes, BodiesThatDoNotFit) {
     expect_refused(path("cut.nrrd"), 3, {"cut.nrrd"});
   }
   write_small("short.nrrd", "uchar", cube, "1234567");
-  expect_refused(path("short.nrrd"), 3, {"short.nrrd", "2 x 2 x 2", "8 bytes", "7", "cut short"});
+  expect_refused(path("short.nrrd"), 3, {"short.nrrd", "2 x 2 x 2", "8 bytes", "7", "truncated"});
   write_small("large.nrrd", "uchar", "dimension: 3\nsizes: 2000 2000 2000\n", "12345678");
   expect_refused(path("large.nrrd"), 3, {"large.nrrd", "2000", "voxels"});
   write_small("none.nrrd", "uchar", "dimension: 3\nsizes: 0 2 2\n", "");

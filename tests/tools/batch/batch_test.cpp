@@ -105,7 +105,7 @@ TEST_F(Batch, RefusesWhatIsNoBatch) {
   };
   refused("", {"no job"});
   refused(job("a", "300") + "{\"id\": 3\n", {"line 2", "column"});
-  refused("[1]\n", {"line 1", "no JSON object"});
+  refused("[1]\n", {"line 1", "not a JSON object"});
   refused(R"({"id": "a", "arguments": []})", {"line 1", "'arguments'"});
   refused(R"({"id": [1], "args": ["check", "x.vtu"]})", {"line 1", "\"id\""});
   refused(R"({"args": ["check", ["x.vtu"]]})", {"line 1", "neither text nor a number"});
@@ -129,7 +129,7 @@ TEST_F(Batch, RefusesWhatIsNoBatch) {
   put(jobs, R"({"args": ["check", "x.vtu", "--stats", ")" + (f / "r.json") + R"("]})");
   expect_refused("batch " + jobs + " --results " + (f / "r.json"), 3, {"r.json", "a file of the batch"});
   put(jobs, job("a", "300"));
-  expect_refused("batch - --results " + jobs, 2, {"no stream"});
+  expect_refused("batch - --results " + jobs, 2, {"cannot be -"});
   expect_refused("batch " + jobs + " --results " + jobs, 2, {"also an input"});
   expect_refused("batch " + jobs + " --stats " + (f / "s.json"), 2, {"--stats"});
   // A file with other contents is not written to.
@@ -174,7 +174,7 @@ TEST_F(Batch, AJobThatCrashesEndsAlone) {
     EXPECT_EQ(lines["b"]["status"], 0);
     EXPECT_EQ(lines["crash"]["status"], signal == SIGKILL ? 5 : 70);
     const std::string said = lines["crash"]["messages"][0];
-    EXPECT_NE(said.find("died of signal " + std::to_string(signal)), std::string::npos) << said;
+    EXPECT_NE(said.find("was killed by signal " + std::to_string(signal)), std::string::npos) << said;
     EXPECT_NE(contents(f / "err").find(said), std::string::npos);
     EXPECT_GT(lines["crash"]["seconds"], 0);
   }

@@ -227,7 +227,7 @@ TEST(SolidComparison, ATargetThatCannotFillAPlateIsMissedAndNotThePlate) {
                            (f / "s.json") + " --target-tets ";
   Answer a = run(call + "100");
   EXPECT_EQ(a.status, 1);
-  EXPECT_NE(a.err.find("walls so thin that fewer tets would be flat; ask for "), std::string::npos) << a.err;
+  EXPECT_NE(a.err.find("walls so thin that fewer tets would be flat; request "), std::string::npos) << a.err;
   auto stats = nlohmann::json::parse(contents(f / "s.json"));
   const auto filling = stats["dense"]["filling_tets"].get<int>();
   EXPECT_NEAR(filling, 1.5 * 0.66 * 100 / 0.25, 150);

@@ -96,7 +96,7 @@ void compare_with_surfaces(TetMesh& mesh, CommandRun& run, CheckReport& check) {
 
 const char* verdict(const CheckReport& check) {
   if (!check.valid()) return "not valid";
-  if (!check.topology_kept()) return "valid, but of another topology";
+  if (!check.topology_kept()) return "valid, but with a different topology";
   return check.within_tolerance() ? "valid" : "valid, but not within the tolerance";
 }
 

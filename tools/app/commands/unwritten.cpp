@@ -68,8 +68,8 @@ void find_unwritten_patches(const CommandLine& line, const TetFormatInfo& format
     note_missing(shown(line.outputs.mesh), what, count, why, report);
   };
   const std::string no_place =
-      "; " + format.extension + " has no place for them, " +
-      (boundary_lacks ? "nor has .off, but .vtp .ply .stl .obj have" : "but --boundary FILE has") +
+      "; " + format.extension + " cannot hold them, " +
+      (boundary_lacks ? "nor can .off, but .vtp .ply .stl .obj can" : "but --boundary FILE can") +
       ", and .msh";
   if (line.outputs.no_boundary)
     note("named patches", report.patches.size(), ", as --no-boundary asks");
@@ -92,7 +92,7 @@ void find_boundary_changes(const CommandLine& line, const TetMesh& mesh, Prepare
 
 void find_unwritten(const CommandLine& line, const TetMesh& mesh, PrepareReport& report) {
   const TetFormatInfo format = written_tet_format(line.outputs.mesh, line.outputs.format);
-  const std::string no_place = "; " + format.extension + " has no place for them";
+  const std::string no_place = "; " + format.extension + " cannot hold them";
   const auto note = [&](const std::string& what, std::size_t count, const std::string& why) {
     note_missing(shown(line.outputs.mesh), what, count, why, report);
   };

@@ -19,11 +19,11 @@ def numbers(values: Any, name: str, what: str, kinds: str = "iuf") -> np.ndarray
     if values is None:
         raise _core.InputError(f"{name}: it has no {what}")
     if np.ma.is_masked(values):
-        raise _core.InputError(f"{name}: {what} are masked at some places; give numbers there")
+        raise _core.InputError(f"{name}: {what} are masked in part; give numbers there")
     try:
         array = np.asarray(values)
     except (ValueError, TypeError) as error:
-        raise _core.InputError(f"{name}: {what} are no array ({error}); several surfaces are a list") from None
+        raise _core.InputError(f"{name}: {what} are not an array ({error}); several surfaces are a list") from None
     if array.dtype.kind not in kinds:
         raise _core.InputError(f"{name}: {what} are of type {array.dtype}; give numbers")
     return array
@@ -39,7 +39,7 @@ def indices(values: Any, name: str, what: str) -> np.ndarray:
     else:
         with np.errstate(invalid="ignore"):
             bad = ~((np.abs(array) <= MAX_EXACT_WHOLE) & (np.floor(array) == array))
-    _refuse(bad, array, name, what, "which is no number of a point")
+    _refuse(bad, array, name, what, "which is not the number of a point")
     return array.astype(np.int64)
 
 

@@ -152,7 +152,8 @@ def _blocks(value: Any, name: str) -> list[Block]:
     try:
         by_kind = dict(value.cells_dict)
     except Exception as error:  # raised by the other library, for example for cells of different sizes
-        raise _core.InputError(f"{name}: its cells cannot be told apart ({error}); give triangles or tets") from None
+        raise _core.InputError(f"{name}: the types of its cells cannot be determined ({error}); give triangles or "
+                               "tets") from None
     by_type = getattr(value, "cell_data_dict", None)
     of_all = getattr(value, "cell_data", None) or {}
     types = getattr(value, "celltypes", None)
@@ -263,7 +264,7 @@ def _remove_midside_nodes(made: Cells, midside: list[np.ndarray], name: str) -> 
     made.tets, made.triangles = new_index[made.tets], new_index[made.triangles]
     made.points = made.points[keep]
     made.point_fields = {f: v[keep] for f, v in made.point_fields.items()}
-    made.drop("midside nodes; tets of ten nodes are taken by their corners", int(count - keep.sum()))
+    made.drop("midside nodes; tets of ten nodes are reduced to their corners", int(count - keep.sum()))
 
 
 def _take_faces(made: Cells, blocks: list[Block], label: Optional[str], names: Names, name: str) -> None:
@@ -302,7 +303,7 @@ def _fans(made: Cells, block: Block, name: str) -> np.ndarray:
         made.drop("faces of fewer than three vertices", len(array))
         return np.empty((0, 1, 3), np.int64)
     if array.shape[1] > corners and made.tets is None:
-        made.drop(f"midside nodes; {_plural(kind)} are taken by their corners", len(np.unique(array[:, corners:])))
+        made.drop(f"midside nodes; {_plural(kind)} are reduced to their corners", len(np.unique(array[:, corners:])))
     array = array[:, [0, 1, 3, 2]] if kind == "pixel" else array[:, :corners]
     return np.stack([array[:, [0, k, k + 1]] for k in range(1, corners - 1)], axis=1)
 
@@ -313,7 +314,7 @@ def _drop_shells(made: Cells, of_sets: np.ndarray, name: str) -> None:
         check_range(cells, len(made.points), name, what)
     shells = of_sets.copy()
     shells[of_sets] = ~are_faces(made.triangles[of_sets], made.tets, len(made.points))
-    made.drop("triangles of sets that are no faces of a tet", int(shells.sum()))
+    made.drop("triangles of sets that are not faces of a tet", int(shells.sum()))
     made.triangles, made.groups = made.triangles[~shells], made.groups[~shells]
 
 

@@ -127,8 +127,8 @@ def members_of(block: Block, group: Any, name: str) -> np.ndarray:
                                f"{values.shape}; give the numbers of its cells")
     bad = (values < 0) | (values >= len(block.cells))
     if bad.any():
-        raise _core.InputError(f"{name}: the set '{group}' names cell {values[bad][0]} of kind {block.kind}, but there "
-                               f"are {len(block.cells)}, numbered from 0")
+        raise _core.InputError(f"{name}: the set '{group}' refers to cell {values[bad][0]} of kind {block.kind}, but "
+                               f"there are {len(block.cells)}, numbered from 0")
     return values.astype(np.int64)
 
 

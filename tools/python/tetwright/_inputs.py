@@ -115,7 +115,7 @@ class Inputs:
         spacing, origin, affine = self._placement
         self._placement_used = True
         if affine is not None and (spacing is not None or origin is not None):
-            raise _core.UsageError("affine says what spacing and origin do; give it, or these")
+            raise _core.UsageError("affine includes spacing and origin; give either affine or these")
         matrix = np.eye(4)
         if affine is not None or (own_affine is not None and spacing is None and origin is None):
             matrix = _placed("affine", affine if affine is not None else own_affine)
@@ -134,7 +134,7 @@ def _placed(option: str, value: Any) -> np.ndarray:
     try:
         return np.asarray(value, float)
     except (ValueError, TypeError):
-        raise _core.UsageError(f"{option} is no array of numbers, but {value!r}") from None
+        raise _core.UsageError(f"{option} is not an array of numbers, but {value!r}") from None
 
 
 def _three(option: str, value: Any) -> np.ndarray:

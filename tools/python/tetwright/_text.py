@@ -16,7 +16,7 @@ def file_name(value: Any, what: str) -> bytes:
     try:
         return _without_nul(os.fsencode(name), name, what)
     except UnicodeEncodeError:
-        raise _core.UsageError(f"{what}: {ascii(name)} holds a part of a character; give whole ones") from None
+        raise _core.UsageError(f"{what}: {ascii(name)} holds an incomplete character; give complete ones") from None
 
 
 def plain_text(value: Any, what: str) -> bytes:
@@ -26,7 +26,7 @@ def plain_text(value: Any, what: str) -> bytes:
     try:
         return _without_nul(value.encode(), value, what)
     except UnicodeEncodeError:
-        raise _core.UsageError(f"{what}: {ascii(value)} holds a part of a character; give whole ones") from None
+        raise _core.UsageError(f"{what}: {ascii(value)} holds an incomplete character; give complete ones") from None
 
 
 def _without_nul(text: bytes, value: Any, what: str) -> bytes:

@@ -259,10 +259,10 @@ std::string iterations_chart(std::span<const IterationReport> iterations) {
     chosen += "M" + length(x) + " " + length(y_of(not_chosen * static_cast<double>(shown[i]->tets_before))) +
               "H" + length(x + width);
   }
-  std::string out = "<div class=\"charts\"><figure>" +
-                    plot.begin("Tets at the beginning of each iteration, the worst at the top");
-  constexpr std::size_t longest_label = 10'000;  // that the margin has room for
-  const std::size_t unit = most < longest_label ? 1 : 1000;
+  std::string out =
+      "<div class=\"charts\"><figure>" + plot.begin("Tets before each iteration, the worst at the top");
+  constexpr std::size_t max_label = 10'000;  // that the margin has room for
+  const std::size_t unit = most < max_label ? 1 : 1000;
   out += y_axis(plot, {{0, "0"}, {0.5, grouped_number(most / 2 / unit)}, {1, grouped_number(most / unit)}},
                 unit == 1 ? "tets" : "thousands of tets");
   const auto tick = [&](std::size_t i) {
@@ -279,8 +279,8 @@ std::string iterations_chart(std::span<const IterationReport> iterations) {
   out += x_axis(plot, ticks, "iteration") + "</svg><figcaption>Tets before each iteration, from the worst ";
   for (std::size_t b = 0; b < bins; ++b) out += "<span class=\"swatch " + shade(b) + "\"></span>";
   return out +
-         " to the best; <span class=\"swatch outline\"></span> those above it are worked "
-         "on</figcaption></figure></div>";
+         " to the best; <span class=\"swatch outline\"></span> tets above this line are processed"
+         "</figcaption></figure></div>";
 }
 
 }  // namespace tetwright

@@ -91,9 +91,9 @@ function centre_sums(indices, corners, points, axis) {
 }
 
 /**
- * What can be seen of the mesh. Whole tets are shown or not: those of materials that are on, with their centres
- * behind the cut. Calls `emit(a, b, c, tet, on_interface)` for each face to draw, corners counter-clockwise; tet is
- * -1 - material for a triangle of the skin of a mesh that is not all there.
+ * The visible part of the mesh. A whole tet is shown if its material is on and its centre is behind the cut. Calls
+ * `emit(a, b, c, tet, on_interface)` for each face to draw, corners counter-clockwise. For a triangle of the skin of
+ * a mesh that the page holds only partly, tet is -1 - material.
  */
 class VisibleMesh {
   constructor(mesh) {
@@ -135,7 +135,7 @@ class VisibleMesh {
     for (let t = 0; t < shown.length; ++t) {
       let is_shown = state.on[tags[t]];
       if (cutting) is_shown &&= state.flip ? sums[t] > limit : sums[t] <= limit;
-      // In a mesh shown in part, a tet appears only in its own cut.
+      // A layer shows only the tets that its own cut exposes.
       if (!about.whole) is_shown &&= cutting && (layer[t] >> state.axis & 1) === 1;
       shown[t] = is_shown ? 1 : 0;
     }

@@ -61,7 +61,7 @@ void add_marks(const std::vector<PageEntry>& entries, nlohmann::json& marks) {
       marks.push_back({{"place", {p.x(), p.y(), p.z()}}, {"text", entry.text}});
 }
 
-/// All that the script has to know beside the arrays.
+/// Data for the script besides the arrays.
 std::string description(const PageMesh& page, const PrepareReport& run, const PageEntries& entries) {
   nlohmann::json marks = nlohmann::json::array();
   add_marks(entries.short_of, marks);
@@ -112,15 +112,15 @@ std::string arrays(const PageMesh& page) {
 std::string not_shown(const PageMesh& page, const TetMesh& mesh) {
   if (page.whole) return "";
   std::string out = "The mesh has " + grouped_number(mesh.tets.size()) +
-                    " tets, too many for a page: it shows the boundary and the interfaces";
+                    " tets, too many for a page, which shows the boundary and the interfaces";
   if (page.coarsened) out += ", coarsened to " + grouped_number(page.triangle_count) + " triangles";
-  out += ", and whole tets where it is cut in the middle";
+  out += ", and whole tets only along cuts through the middle";
   const char* axes[] = {"x", "y", "z"};
   std::string missing;
   for (std::size_t a = 0; a < 3; ++a)
     if (!page.layers[a]) missing += (missing.empty() ? "" : ", ") + std::string(axes[a]);
-  if (!missing.empty()) out += " (too many along " + missing + ")";
-  return "<p class=\"notice\">" + html_text(out + ". Histograms and figures are those of all tets.") + "</p>";
+  if (!missing.empty()) out += " (not across " + missing + ", where they are too many)";
+  return "<p class=\"notice\">" + html_text(out + ". Histograms and statistics are of all tets.") + "</p>";
 }
 
 std::string section(const char* heading, const std::string& content) {
@@ -130,9 +130,8 @@ std::string section(const char* heading, const std::string& content) {
 std::string lists(const PageEntries& entries) {
   std::size_t mark = 1;
   std::string out;
-  if (!entries.short_of.empty())
-    out += section("Short of what was asked", entries_list(entries.short_of, mark));
-  if (!entries.found.empty()) out += section("Found and done", entries_list(entries.found, mark));
+  if (!entries.short_of.empty()) out += section("Shortfalls", entries_list(entries.short_of, mark));
+  if (!entries.found.empty()) out += section("Findings", entries_list(entries.found, mark));
   if (!entries.worst.empty()) out += section("Worst shapes", entries_list(entries.worst, mark));
   return out;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// The controls, and what colours stand for.
+// The controls, and the quantities that colours show.
 
 // Colours that people with any kind of colour vision tell apart (Paul Tol, "bright" and "muted").
 const MATERIAL_COLOURS = [
@@ -26,18 +26,18 @@ function ramp(stops) {
   return out;
 }
 
-/** At most three digits that matter; beside something of another size those that matter there. */
+/** At most three significant digits, counted from the leading digit of `size`. */
 function short(value, size = value) {
   const decimals = size === 0 ? 0 : 2 - Math.floor(Math.log10(Math.abs(size)));
   return decimals <= 20 && decimals >= 0 ? String(Number(value.toFixed(decimals))) : String(Number(value.toPrecision(3)));
 }
 
-// Values of `distance` with a meaning of their own.
+// Special values of `distance`.
 const FARTHEST = 65534, NOT_MEASURED = 65535;
 
 /**
- * The share of the largest distance that 98 % of the points are within, or 1 if it is more than a third: the lid of a
- * hole is far from any scan, and would leave one colour for all the rest.
+ * Fraction of the largest distance that 98 % of the points are within, or 1 if it is more than a third: the lid of a
+ * hole is far from any scan, and would leave one colour for all other points.
  */
 function share_of_most(distance) {
   const counts = new Uint32Array(FARTHEST + 1);
@@ -58,7 +58,7 @@ class Page {
     this.view = view;
     this.visible = new VisibleMesh(mesh);
     const materials = mesh.about.materials;
-    // Colours of the segmentation, if it has any.
+    // Colours of the segmentation are used if it has any.
     this.colours = materials.map((m, i) => m.colour ? m.colour.map(part => Math.round(255 * part)) :
       rgb_of(m.tag === OUTSIDE_TAG && m.name === "outside" ? OUTSIDE_COLOUR : MATERIAL_COLOURS[i % MATERIAL_COLOURS.length]));
     this.state = {
@@ -73,7 +73,7 @@ class Page {
     this.drawn = 0;
   }
 
-  /** What colours can stand for, by its name in the list. */
+  /** Quantities that colours can show, by their names in the list. */
   make_scales() {
     const {about, solid, dihedral} = this.mesh;
     const scales = {material: {name: "material"}};
@@ -325,7 +325,7 @@ function has_webgl() {
 
 function start_page() {
   if (!has_webgl()) {
-    byId("message").textContent = "This browser has no WebGL, so there is no 3D view; all figures are below.";
+    byId("message").textContent = "This browser has no WebGL, so there is no 3D view; all statistics are below.";
     byId("message").hidden = false;
     return null;
   }

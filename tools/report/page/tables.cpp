@@ -40,7 +40,7 @@ std::string cell(const std::string& text) { return "<td>" + html_text(text) + "<
 
 std::string mark_button(std::size_t number, const Vec3& place) {
   const std::string n = std::to_string(number);
-  return " <button type=\"button\" class=\"mark\" data-mark=\"" + n + "\" title=\"Show the place " +
+  return " <button type=\"button\" class=\"mark\" data-mark=\"" + n + "\" title=\"Show the location " +
          place_text(place) + "\">" + n + "</button>";
 }
 

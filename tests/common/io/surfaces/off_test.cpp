@@ -66,7 +66,7 @@ TEST(Off, BadInput) {
   expect_input_error(read_off, "OFF\n3 1 0\n0 0 0\n1 0 x\n0 1 0\n3 0 1 2\n", "line 4", "\"x\"");
   expect_input_error(read_off, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "line 6", "point 3");
   expect_input_error(read_off, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n", "line 6", "point -1");
-  expect_input_error(read_off, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n", "cut short");
+  expect_input_error(read_off, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1\n", "truncated");
   expect_input_error(read_off, "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n", "no triangles");
 }
 

@@ -47,7 +47,7 @@ TEST(Stl, BinaryThatBeginsWithSolid) {
   const std::string bytes = binary("solid made by", {{0, 0, 0, 1, 0, 0, 0, 1, 0}});
   EXPECT_EQ(read_stl(bytes, "f").triangles.size(), 1u);
   EXPECT_EQ(read_stl(bytes + "more", "f").triangles.size(), 1u);
-  expect_input_error(read_stl, bytes.substr(0, bytes.size() - 1), "byte 80", "cut short");
+  expect_input_error(read_stl, bytes.substr(0, bytes.size() - 1), "byte 80", "truncated");
 }
 
 TEST(Stl, WhatIsDroppedIsNamed) {
@@ -56,7 +56,7 @@ TEST(Stl, WhatIsDroppedIsNamed) {
   bytes.back() = 1;
   (void)read_stl(bytes + "more", "f", &dropped);
   EXPECT_EQ(dropped, (std::vector<Dropped>{{"triangles with attribute bytes", 1},
-                                           {"bytes behind the last triangle", 4}}));
+                                           {"bytes after the last triangle", 4}}));
 }
 
 TEST(Stl, SolidsAreGroups) {
@@ -77,9 +77,9 @@ TEST(Stl, SeveralSolidsInAnyCase) {
 
 TEST(Stl, BadInput) {
   expect_input_error(read_stl, "", "empty");
-  expect_input_error(read_stl, "nothing", "7 bytes", "cut short");
-  expect_input_error(read_stl, "solid a\n" + facet, "line 9", "cut short");
-  expect_input_error(read_stl, "solid a\n" + facet.substr(0, 60), "line 5", "cut short");
+  expect_input_error(read_stl, "nothing", "7 bytes", "truncated");
+  expect_input_error(read_stl, "solid a\n" + facet, "line 9", "truncated");
+  expect_input_error(read_stl, "solid a\n" + facet.substr(0, 60), "line 5", "truncated");
   expect_input_error(read_stl, "solid a\nendsolid a\n", "no triangles");
   expect_input_error(read_stl, "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 inf\n", "line 4",
                      "not finite");

@@ -144,14 +144,14 @@ TEST(Vtp, TextsThatDoNotFit) {
       expect_input_error(read_vtp, text, "Array \"Names\": ", said);
   };
   expect_refused({"a", "b"}, "2 values, but 3 were expected");
-  expect_refused({"a", "b", "c", ""}, "more than the 3 texts expected");
-  expect_refused({"a", std::string(1001, 'b'), "c"}, "text 1 (counted from 0) has more than 1000 bytes");
+  expect_refused({"a", "b", "c", ""}, "more than the 3 strings expected");
+  expect_refused({"a", std::string(1001, 'b'), "c"}, "string 1 (counted from 0) has more than 1000 bytes");
   EXPECT_EQ(read_vtp(file(ascii_texts({"a", std::string(1000, 'b'), "c"})), "f").groups.size(), 2u);
-  expect_input_error(read_vtp, with_base64(std::string("a\0b\0c", 5)), "its last text does not end");
+  expect_input_error(read_vtp, with_base64(std::string("a\0b\0c", 5)), "its last string does not end");
   expect_input_error(read_vtp, with_base64(std::string(4000, 'a')), "4000 bytes, but 3003 were expected");
   expect_input_error(read_vtp, with_zlib(std::string(4000, '\0')), "4000 bytes, but 3003 were expected");
   expect_input_error(read_vtp, file(text_array("ascii", "97 0 300 0")),
-                     "number of a character, found \"300\"");
+                     "expected a character code, found \"300\"");
   expect_input_error(read_vtp, file(text_array("ascii", "liver bone")), "found \"liver\"");
   // Two texts for each cell are not a label.
   std::string two = ascii_texts({"a", "b"});

@@ -74,7 +74,7 @@ TEST(Abaqus, TenNodesAreReadByTheirCorners) {
   EXPECT_EQ(back.mesh.points.size(), mesh.points.size());
   EXPECT_EQ(back.mesh.tets, (std::vector<Tet>{mesh.tets[1], mesh.tets[0]}));
   ASSERT_FALSE(back.dropped.empty());
-  EXPECT_EQ(back.dropped[0], (Dropped{"midside nodes; tets of ten nodes are taken by their corners", 9}));
+  EXPECT_EQ(back.dropped[0], (Dropped{"midside nodes; tets of ten nodes are reduced to their corners", 9}));
 }
 
 TEST(Abaqus, FilesOfOtherPrograms) {
@@ -122,7 +122,7 @@ TEST(Abaqus, BadInput) {
                      "more");
   expect_input_error(read_abaqus, nodes + tet + "*INCLUDE, INPUT=a.inp\n", "line 8", "INCLUDE");
   expect_input_error(read_abaqus, nodes + tet + "*PART\n*PART\n", "line 9", "second");
-  expect_input_error(read_abaqus, nodes + tet + "*INSTANCE\n1, 0, 0\n", "line 9", "moved");
+  expect_input_error(read_abaqus, nodes + tet + "*INSTANCE\n1, 0, 0\n", "line 9", "translated");
   const std::string whole = nodes + "*ELEMENT, TYPE=C3D4, ELSET=a\n1, 1, 2, 3, 10";
   for (std::size_t n = 0; n + 3 < whole.size(); ++n)
     (void)error_of<InputError>([&] { (void)read_abaqus(whole.substr(0, n), "f"); });

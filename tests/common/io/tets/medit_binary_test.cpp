@@ -110,7 +110,7 @@ TEST(MeditBinary, EveryVersionAndByteOrder) {
 TEST(MeditBinary, BadInput) {
   const std::string good = small(2, false).bytes;
   expect_input_error(read_medit_binary, "", "empty");
-  expect_input_error(read_medit_binary, "MeshVersionFormatted 2", "byte 0", "no binary Medit mesh");
+  expect_input_error(read_medit_binary, "MeshVersionFormatted 2", "byte 0", "not a binary Medit mesh");
   expect_input_error(read_medit_binary, std::string("\1\0\0\0\7\0\0\0", 8), "byte 4", "version 7");
   File hexahedra = small(2, false);
   hexahedra.section(10, [](File& s) { s.integer(2); });
@@ -123,7 +123,7 @@ TEST(MeditBinary, BadInput) {
   expect_input_error(read_medit_binary, beyond.bytes, "point 5 of 4");
   File many = small(2, false);
   many.section(6, [](File& s) { s.integer(2000000000); });
-  expect_input_error(read_medit_binary, many.bytes, "2000000000", "cut short");
+  expect_input_error(read_medit_binary, many.bytes, "2000000000", "truncated");
   for (std::size_t n = 0; n < good.size(); ++n)
     (void)error_of<InputError>([&] { (void)read_medit_binary(good.substr(0, n), "f"); });
 }

@@ -163,7 +163,7 @@ TEST(Medit, BadInput) {
   expect_input_error(read_medit, head + vertices + "Tetrahedra\n1\n1 2 3 4 5000000000\n", "line 12",
                      "32 bits");
   expect_input_error(read_medit, head + vertices + "Tetrahedra\n1\n1 2 3 4 x\n", "line 12", "\"x\"");
-  expect_input_error(read_medit, head + vertices + "Tetrahedra\n1\n1 2 3    \n\n\n\n", "cut short");
+  expect_input_error(read_medit, head + vertices + "Tetrahedra\n1\n1 2 3    \n\n\n\n", "truncated");
   expect_input_error(read_medit, head + "Vertices\n2\n0 0 0 0\n1 NaN 0 0\n", "line 7", "not finite");
 }
 

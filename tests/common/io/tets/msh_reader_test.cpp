@@ -78,7 +78,7 @@ TEST(MshReader, DataAndUnknownSections) {
 
 TEST(MshReader, BadInput) {
   const std::string whole = head + entities + nodes + elements;
-  expect_input_error(read_msh, replaced(whole, "4.1 0 8", "4.1 1 8"), "four bytes", "damaged");
+  expect_input_error(read_msh, replaced(whole, "4.1 0 8", "4.1 1 8"), "four-byte number 1", "damaged");
   expect_input_error(read_msh, replaced(whole, "4.1 0 8", "3.0 0 8"), "\"3.0\"", "4.0 or 4.1");
   expect_input_error(read_msh, head + "$PartitionedEntities\n1\n$EndPartitionedEntities\n", "line 4",
                      "partitioned");

@@ -64,7 +64,7 @@ TEST(TetGen, QuadraticTetsByTheirCorners) {
   EXPECT_EQ(r.mesh.points.size(), 4u);
   EXPECT_EQ(r.mesh.points[3], Vec3(81, 0, 1));
   EXPECT_EQ(r.dropped,
-            (std::vector<Dropped>{{"midside nodes; tets of ten nodes are taken by their corners", 6}}));
+            (std::vector<Dropped>{{"midside nodes; tets of ten nodes are reduced to their corners", 6}}));
 }
 
 TEST(TetGen, BadInput) {
@@ -83,18 +83,18 @@ TEST(TetGen, BadInput) {
   expect(replaced(node, "3  2  1", "3  2000000000  1"), ele, "n: line 3:", "2000000000");
   expect(replaced(node, "5  3", "0  3"), ele, "n: line", "no points");
   expect(replaced(node, "1 0 0 0 0.5", "2 0 0 0 0.5"), ele, "n: line 4:", "number 2");
-  expect(replaced(node, "4 0 0 1 3.5", "5 0 0 1 3.5"), ele, "n: line 8:", "point 5 stands where point 4");
+  expect(replaced(node, "4 0 0 1 3.5", "5 0 0 1 3.5"), ele, "n: line 8:", "found point 5 instead of point 4");
   expect(replaced(node, "1 0 0 1.5", "1 0 inf 1.5"), ele, "n: line 5:", "not finite");
   expect(replaced(node, "1 0 0 1.5", "1 0 zero 1.5"), ele, "n: line 5:", "\"zero\"");
   expect(replaced(node, "1.5 8 0", "1.5"), ele, "n: line 5:", "the line ends where a attribute");
-  expect(replaced(node, "5 1 1 1 4.5 11 0\n", ""), ele, "n: line", "cut short");
+  expect(replaced(node, "5 1 1 1 4.5 11 0\n", ""), ele, "n: line", "truncated");
   expect(node, replaced(ele, "2 4 2", "2 3 2"), "e: line 1:", "tets of 3 points");
   expect(node, replaced(ele, "2 4 2", "4000000000 4 2"), "e: line", "4000000000");
   expect(node, replaced(ele, "2 4 2", "0 4 2"), "e: line", "no tets");
   expect(node, replaced(ele, "2 3 4 5", "2 3 4 6"),
-         "e: line 4:", "point 6, but those of the .node file are 1 to 5");
+         "e: line 4:", "point 6, but the .node file has points 1 to 5");
   expect(node, replaced(ele, "2 3 4 5", "0 3 4 5"), "e: line 4:", "point 0");
-  expect(node, replaced(ele, "2 4 2", "3 4 2"), "e: line", "cut short");
+  expect(node, replaced(ele, "2 4 2", "3 4 2"), "e: line", "truncated");
   for (std::size_t n = 0; n + 12 < ele.size(); ++n)
     (void)error_of<InputError>([&] { (void)read_pair(node, ele.substr(0, n)); });
 }
@@ -147,11 +147,11 @@ TEST(TetGen, BadFaces) {
     EXPECT_EQ(message.rfind("f", 0), 0u) << message;
   };
   refused("", "empty");
-  refused("2 1\n1 1 2 3 7\n", "cut short");
-  refused("1 1\n1 1 2 9 7\n", "names point 9");
+  refused("2 1\n1 1 2 3 7\n", "truncated");
+  refused("1 1\n1 1 2 9 7\n", "refers to point 9");
   refused("1 1\n1 1 2 3 x\n", "\"x\"");
   refused("1 2\n1 1 2 3 7\n", "2");
-  refused("1 1\n1 1 2 5 7\n", "no face");
+  refused("1 1\n1 1 2 5 7\n", "not a face of any tet");
 }
 
 }  // namespace

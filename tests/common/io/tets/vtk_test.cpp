@@ -171,8 +171,7 @@ TEST(Vtk, BadInput) {
   expect_input_error(read_vtk, replaced(good, "POINTS 4 float", "POINTS -4 float"), "line 5", "-4");
   expect_input_error(read_vtk, replaced(good, "0.000000", "nan"), "line 6", "not finite");
   expect_input_error(read_vtk, replaced(good, "CELLS 2 9", "CELLS 2 10"), "expected a whole number");
-  expect_input_error(read_vtk, replaced(good, "CELLS 2 9", "CELLS 1 9"),
-                     "take 4 numbers, but CELLS promises 9");
+  expect_input_error(read_vtk, replaced(good, "CELLS 2 9", "CELLS 1 9"), "use 4 numbers, but CELLS gives 9");
   expect_input_error(read_vtk, replaced(good, "3 0 1 2 4", "3 0 1 2 5"), "line 8", "cell 1");
   expect_input_error(read_vtk, replaced(good, "3 0 1 2 4 0 1 2 3", "4 0 1 2 0 3 0 1 2"), "line 8",
                      "tet of 3 points");
@@ -186,7 +185,7 @@ TEST(Vtk, BadInput) {
   const auto data = [&](const std::string& more) { return good + more; };
   expect_input_error(read_vtk, data("CELL_DATA 3\n"), "line 11", "data of 3 cells, but there are 2");
   expect_input_error(read_vtk, data("POINT_DATA 3\n"), "line 11", "data of 3 points, but there are 4");
-  expect_input_error(read_vtk, data("CELL_DATA 2\nSCALARS a int\n1\n"), "line 14", "cut short");
+  expect_input_error(read_vtk, data("CELL_DATA 2\nSCALARS a int\n1\n"), "line 14", "truncated");
   expect_input_error(read_vtk, data("CELL_DATA 2\nSCALARS a float\nLOOKUP_TABLE default\n1 x\n"), "line 14",
                      "\"x\"");
   expect_input_error(read_vtk, data("CELL_DATA 2\nSCALARS a what\nLOOKUP_TABLE default\n1 2\n"), "\"what\"");

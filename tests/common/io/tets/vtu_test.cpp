@@ -422,8 +422,7 @@ TEST(Vtu, PiecesAreJoinedWhereTheyMeet) {
   EXPECT_EQ(r.mesh.materials, (std::vector<MaterialTag>{5, 6}));
   ASSERT_EQ(r.mesh.point_fields.size(), 1u);
   EXPECT_EQ(r.mesh.point_fields[0].values, (std::vector<double>{1, 2, 3, 4, 7}));
-  EXPECT_EQ(r.dropped,
-            (std::vector<Dropped>{{"points of several pieces at one place but for the first", 3}}));
+  EXPECT_EQ(r.dropped, (std::vector<Dropped>{{"duplicate points shared between pieces", 3}}));
 }
 
 TEST(Vtu, EmptyPiecesHaveNoSay) {

@@ -88,7 +88,7 @@ TEST_F(Xdmf, FacetsOfOtherPointsAreSaid) {
   write_tet_mesh(mesh_with_surfaces(), path("a.xdmf"));
   put(path("m_facets.xdmf"), get(path("a_facets.xdmf")));
   EXPECT_EQ(read_tet_mesh(path("m.xdmf")).dropped,
-            (std::vector<Dropped>{{"facet files of other points (\"m_facets.xdmf\")", 1}}));
+            (std::vector<Dropped>{{"facet files for other points (\"m_facets.xdmf\")", 1}}));
   put(path("m_facets.xdmf"), "cut");
   EXPECT_NE(error_of<InputError>([&] { (void)read_tet_mesh(path("m.xdmf")); }).find("m_facets.xdmf"),
             std::string::npos);
@@ -123,7 +123,7 @@ TEST_F(Xdmf, BadInput) {
   expect("", "byte 0");
   expect("<a/>", "no element Xdmf");
   expect(replaced(small, "Tetrahedron", "Hexahedron"), "no grid of tets", "\"hexahedron\"");
-  expect(replaced(small, "0 1 2 3", "0 1 2 4"), "Topology", "names point 4 of 4");
+  expect(replaced(small, "0 1 2 3", "0 1 2 4"), "Topology", "refers to point 4 of 4");
   expect(replaced(small, "0 1 2 3", "0 1 2 2.5"), "Topology", "2.5");
   expect(replaced(small, "0 1 2 3", "0 1 2"), "fewer nodes");
   expect(replaced(small, "0 1 2 3", "0 1 2 3 4"), "more than the 4");
@@ -137,10 +137,10 @@ TEST_F(Xdmf, BadInput) {
   put(path("m.xdmf"), replaced(small, "Format=\"XML\">0 0 0 1 0 0 0 1 0\n0 0 1", "Format=\"HDF\">a.h5:/p"));
   const auto from_file = [&] { return error_of<InputError>([&] { (void)read_tet_mesh(path("m.xdmf")); }); };
   put(path("a.h5"), "no HDF5");
-  EXPECT_NE(from_file().find("a.h5: this is no HDF5 file"), std::string::npos);
+  EXPECT_NE(from_file().find("a.h5: this is not an HDF5 file"), std::string::npos);
   write_tet_mesh(one_tet(), path("b.xdmf"));
   put(path("a.h5"), get(path("b.h5")));
-  EXPECT_NE(from_file().find("a.h5: dataset \"/p\" is not there"), std::string::npos);
+  EXPECT_NE(from_file().find("a.h5: dataset \"/p\" is missing"), std::string::npos);
 }
 
 }  // namespace

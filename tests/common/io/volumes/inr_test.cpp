@@ -67,7 +67,7 @@ TEST(Inr, BadInput) {
   expect_refused("#INRIMAGE-4#{\n" + std::string(100000, '\n'), "no end");
   expect_refused(header(bytes8 + "what\n") + body, "line 10", "\"what\"");
   expect_refused(header(bytes8 + "VDIM=1\n") + body, "twice");
-  expect_refused(replaced(header(bytes8), "VDIM=1", "VDIM=3") + body, "line 5", "3 numbers a voxel");
+  expect_refused(replaced(header(bytes8), "VDIM=1", "VDIM=3") + body, "line 5", "3 numbers per voxel");
   expect_refused(replaced(header(bytes8), "ZDIM=4", "ZDIM=0") + body, "axis 2 is 0");
   expect_refused(replaced(header(bytes8), "ZDIM=4", "ZDIM=x") + body, "line 4", "\"x\"");
   expect_refused(replaced(header(bytes8), "ZDIM=4\n", "") + body, "no line \"zdim\"");
@@ -77,7 +77,7 @@ TEST(Inr, BadInput) {
   expect_refused(header("TYPE=float\nPIXSIZE=32 bits\n") + body, "no line \"cpu\"");
   expect_refused(header(bytes8 + "VX=0\n") + body, "along axis 0 is zero");
   expect_refused(header(bytes8 + "TX=inf\n") + body, "not finite");
-  expect_refused(header(bytes8 + "RZ=90\n") + body, "line 10", "turned");
+  expect_refused(header(bytes8 + "RZ=90\n") + body, "line 10", "rotated");
   expect_refused(header(bytes8) + body.substr(1), "need 24 bytes, but only 23 follow");
   expect_refused(deflated(header(bytes8) + body.substr(1)), "only 23 are there");
   expect_refused(deflated(header(bytes8)).substr(0, 30), "f: ");

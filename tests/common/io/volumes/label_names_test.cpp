@@ -68,8 +68,8 @@ TEST(LabelNames, FromAFile) {
 }
 
 TEST(LabelNames, Errors) {
-  expect_input_error(parse_label_names, "", "names no label");
-  expect_input_error(parse_label_names, "# 1 liver\n\n", "names no label");
+  expect_input_error(parse_label_names, "", "lists no labels");
+  expect_input_error(parse_label_names, "# 1 liver\n\n", "lists no labels");
   expect_input_error(parse_label_names, "1 liver\nspleen 2\n", "line 2: expected the number of a label",
                      "\"spleen\"");
   expect_input_error(parse_label_names, "1.5 liver\n", "line 1: expected the number", "\"1.5\"");

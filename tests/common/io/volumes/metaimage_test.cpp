@@ -93,10 +93,10 @@ TEST(MetaImage, DetachedBodies) {
   refused("ElementDataFile = LIST\na.raw\n", "several files");
   refused("ElementDataFile = a%03d.raw 1 4 1\n", "several files");
   refused("ElementDataFile =\n", "names no file");
-  refused("HeaderSize = 99\n" + named, "99 bytes to be skipped of 24");
+  refused("HeaderSize = 99\n" + named, "99 bytes to skip, but the file has 24");
   refused("HeaderSize = 1\n" + named,
           "dir/my voxels.raw: its 2 x 3 x 4 voxels of 1 byte need 24 bytes, but only 23");
-  refused("HeaderSize = -1\nCompressedData = True\n" + named, "only raw data allow");
+  refused("HeaderSize = -1\nCompressedData = True\n" + named, "allowed only for raw data");
 }
 
 TEST(MetaImage, BadInput) {

@@ -176,7 +176,8 @@ TEST(Nifti, ScalingMustLeaveWholeNumbers) {
   EXPECT_EQ(read(plain().set<float>(112, 0).set<float>(116, 7)).labels[3], 3);
   EXPECT_EQ(read(plain().set<float>(112, std::numeric_limits<float>::quiet_NaN())).labels[3], 3);
   expect_refused(plain().set<float>(112, 0.5f), "voxel (1, 0, 0) has the value 0.5, not a whole number");
-  expect_refused(plain().set<float>(112, 1e9f), "voxel (1, 1, 0) has the value 3e+09, which is no label");
+  expect_refused(plain().set<float>(112, 1e9f),
+                 "voxel (1, 1, 0) has the value 3e+09, which is not a 32-bit label");
   expect_refused(plain().set<float>(112, 1).set<float>(116, std::numeric_limits<float>::infinity()),
                  "scl_inter");
 }
@@ -188,7 +189,7 @@ TEST(Nifti, MoreAxesAndOffsets) {
       read_alone(plain().set<float>(108, 368).bytes() + std::string(16, 'x') + body + "more", "f").labels,
       counted_labels());
   expect_refused(plain().set<std::int16_t>(40, 4).set<std::int16_t>(48, 2),
-                 "dim[4] is 2; a volume of one moment");
+                 "dim[4] is 2; a volume of a single time point");
   expect_refused(plain().set<std::int16_t>(40, 5).set<std::int16_t>(50, 3),
                  "dim[5] is 3; a volume with one label");
   expect_refused(plain().set<std::int16_t>(40, 2), "dim[0] is 2");
@@ -197,7 +198,7 @@ TEST(Nifti, MoreAxesAndOffsets) {
   expect_refused(plain().set<float>(108, 100), "vox_offset is 100");
   expect_refused(plain().set<float>(108, 352.5f), "vox_offset is 352.5");
   expect_refused(plain().set<float>(108, std::numeric_limits<float>::quiet_NaN()), "vox_offset is nan");
-  expect_refused(plain().set<float>(108, 4000), "begin at byte 4000 of 376; the file is cut short");
+  expect_refused(plain().set<float>(108, 4000), "begin at byte 4000 of 376; the file is truncated");
 }
 
 TEST(Nifti, BadInput) {

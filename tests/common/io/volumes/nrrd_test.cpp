@@ -143,11 +143,11 @@ TEST(Nrrd, DetachedBodies) {
   refused(head + "data file: a%02d.raw 1 4 1\n", "several files");
   refused(head + "data file:\n", "names no file");
   refused(detached + "byte skip: 1\n", "b.raw: its 2 x 3 x 4 voxels of 1 byte need 24 bytes, but only 23");
-  refused(detached + "byte skip: 99\n", "99 bytes to be skipped, but the data have 24");
+  refused(detached + "byte skip: 99\n", "99 bytes to skip, but the data have 24");
   refused(detached + "byte skip: -2\n", "-2 bytes");
-  refused(detached + "line skip: 5\n", "5 lines to be skipped");
+  refused(detached + "line skip: 5\n", "5 lines to skip");
   refused(detached + "line skip: -1\n", "-1 lines");
-  refused(replaced(detached, "raw", "gzip") + "byte skip: -1\n", "only raw data allow");
+  refused(replaced(detached, "raw", "gzip") + "byte skip: -1\n", "allowed only for raw data");
 }
 
 TEST(Nrrd, BadHeaders) {
@@ -178,14 +178,14 @@ TEST(Nrrd, BadHeaders) {
   expect_refused(with("space directions: (1,0,0) (0,1,0) (0,1)"), "line 7", "2 numbers");
   expect_refused(with("space directions: (1,0,0) (0,1,0) (0,1,a)"), "line 7", "(0,1,a)");
   expect_refused(with("space directions: (1,0,0) (0,1,0) (0,1,1"), "line 7", "(0,1,1");
-  expect_refused(with("space directions: (1,0,0) (0,1,0) none"), "line 5", "not one of space");
+  expect_refused(with("space directions: (1,0,0) (0,1,0) none"), "line 5", "not a spatial axis");
   expect_refused(with("space directions: (1,0,0) (0,1,0) (1,1,0)"), "in one plane");
   expect_refused(with("space directions: (1,0,0) (0,1,0) (1,nan,0)"), "not finite");
   expect_refused(with("space origin: (1,0,inf)"), "origin (1 0 inf) is not finite");
   expect_refused(with("space origin: none"), "line 7", "one vector");
   expect_refused(with("spacings: 1 0 1"), "along axis 1 is zero");
   expect_refused(with("spacings: 1 inf 1"), "not finite");
-  expect_refused(with("spacings: 1 1"), "line 7", "2 numbers as spacings, 3 are needed");
+  expect_refused(with("spacings: 1 1"), "line 7", "expected 3 numbers as spacings, found 2");
 }
 
 TEST(Nrrd, BadBodies) {
@@ -193,7 +193,7 @@ TEST(Nrrd, BadBodies) {
   const std::string gzip = replaced(head, "raw", "gzip") + "\n";
   const std::string packed = deflated(body);
   expect_refused(gzip + deflated(body.substr(1)), "only 23 are there");
-  expect_refused(gzip + packed.substr(0, 20), "are there; the file is cut short");
+  expect_refused(gzip + packed.substr(0, 20), "are there; the file is truncated");
   expect_refused(gzip + "not gzip at all", "compressed data are damaged");
   std::string checksum = packed;
   checksum[checksum.size() - 6] ^= 1;
@@ -207,7 +207,7 @@ TEST(Nrrd, BadBodies) {
   numbers[9] = std::numeric_limits<float>::quiet_NaN();
   expect_refused(floats + bytes_of(numbers), "voxel (1, 1, 1) has the value nan, not a whole number");
   numbers[9] = 3e9f;
-  expect_refused(floats + bytes_of(numbers), "voxel (1, 1, 1)", "no label of 32 bits");
+  expect_refused(floats + bytes_of(numbers), "voxel (1, 1, 1)", "not a 32-bit label");
   std::vector<std::uint32_t> large(24, 7);
   large[23] = 2147483648u;
   expect_refused(replaced(floats, "float", "uint") + bytes_of(large),

@@ -206,7 +206,7 @@ TEST(ReportPage, OfALargerMeshIsBounded) {
   // A layer that is too large is left out, and the page reports it.
   const PageLimits no_layers{1000, 2000, 10};
   EXPECT_EQ(page_mesh(mesh, nullptr, no_layers).tet_count, 0u);
-  EXPECT_NE(page_of(mesh, no_layers).find("too many along x, y, z"), std::string::npos);
+  EXPECT_NE(page_of(mesh, no_layers).find("not across x, y, z, where they are too many"), std::string::npos);
 }
 
 TEST(ReportPage, ASkinIsCoarsenedToWhatIsAllowed) {
