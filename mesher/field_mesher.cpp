@@ -137,10 +137,10 @@ double finest_cell_size(const MesherOptions& options, double longest_side, doubl
                      " cells along the longest side; at most " +
                      std::to_string(DomainTuning::Frames::max_resolution) + " are possible");
   if (max_coordinate * 0x1p-52 > h * DomainTuning::Frames::share_of_rounding)
-    throw InputError(file, 0,
-                     "with coordinates up to " + short_number(max_coordinate) + " cells of " +
-                         short_number(h) +
-                         " cannot be told apart safely; move it nearer to the origin or take larger cells");
+    throw InputError(
+        file, 0,
+        "with coordinates up to " + short_number(max_coordinate) + " cells of " + short_number(h) +
+            " cannot be distinguished safely; move it nearer to the origin or take larger cells");
   return h;
 }
 

@@ -64,7 +64,7 @@ DenseMesh mesh_labels(const LabelInput& labels, const MesherOptions& options, Pr
     for (const LabelMaterial& m : labels.materials)
       if (m.tag == outside_tag || m.name == outside_name)
         throw UsageError("the material '" + m.name + "' of tag " + std::to_string(m.tag) +
-                         " would be taken for the outside that is kept; leave --keep-outside away or give it "
+                         " conflicts with the kept outside; omit --keep-outside or give it "
                          "another name");
   const GridFrame voxels = label_frame(labels, report.cell_size, options.uniform);
   ThinLabels thin;

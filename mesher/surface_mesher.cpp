@@ -52,7 +52,7 @@ void validate_encloses(const MesherInput::Body& body) {
   if (body.surface.closed < body.surface.triangles.size())
     throw InputError(
         body.file, 0,
-        "the surface is not closed and encloses nothing that cells of this size could show; close "
+        "the surface is not closed and encloses nothing that cells of this size can resolve; close "
         "its holes, or use a higher resolution if it is closed but for small ones");
 }
 
@@ -75,7 +75,7 @@ void validate_materials_left(const MesherInput& input, const MaterialField& fiel
           input.bodies[0].file, 0,
           "nothing is left of the layer '" + region.name +
               "': it is thinner than the smallest cells or later surfaces cover it; use a higher "
-              "resolution, or list the surfaces that it goes round first");
+              "resolution, or list the surfaces that enclose it first");
     if (body == input.bodies.begin() && !input.layers.empty())
       throw InputError(body->file, 0,
                        "nothing is left of '" + region.name +
@@ -305,7 +305,7 @@ void validate_outside_is_free(const MesherInput& input) {
   const auto taken = [](const std::string& name, MaterialTag tag) {
     if (name == outside_name || tag == outside_tag)
       throw UsageError("the material '" + name + "' of tag " + std::to_string(tag) +
-                       " would be taken for the outside that is kept; give it another name or tag");
+                       " conflicts with the kept outside; give it another name or tag");
   };
   for (const MesherInput::Body& b : input.bodies) taken(b.name, b.tag);
   for (const MaterialLayer& l : input.layers) taken(l.name, l.tag);

@@ -131,7 +131,7 @@ std::vector<Index> Remesher::Impl::tets_of(const RemeshRegion& region) {
     near.make_distinct(tets);
     for (Index t : tets)
       if (t >= mesh.tet_slots() || mesh.dead(t))
-        throw UsageError("the region lists tet " + std::to_string(t) + ", which is not there");
+        throw UsageError("the region lists tet " + std::to_string(t) + ", which does not exist");
     return tets;
   }
   if (const auto* box = std::get_if<RemeshRegion::Box>(&region.value_)) {
@@ -343,7 +343,7 @@ void Remesher::set_positions(std::span<const Index> points, std::span<const Vec3
     throw UsageError(std::to_string(points.size()) + " points, but " + std::to_string(positions.size()) +
                      " positions");
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!has_point(points[i])) throw UsageError("point " + std::to_string(points[i]) + " is not there");
+    if (!has_point(points[i])) throw UsageError("point " + std::to_string(points[i]) + " does not exist");
     if (!positions[i].allFinite())
       throw InputError(impl_->options.name, 0,
                        "the new position of point " + std::to_string(points[i]) + " is not finite");

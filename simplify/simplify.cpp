@@ -74,7 +74,7 @@ std::size_t target_for_sizes(const Engine& engine, const SimplifyOptions& option
     tets = std::max(std::min(tets, tets_for_edge(engine.mesh(), within_bounds * options.min_edge)),
                     tets_for_edge(engine.mesh(), options.max_edge / within_bounds));
   require_memory(Memory::program_bytes + Memory::bytes_per_tet * tets,
-                 options.name + ": about " + short_number(tets) + " tets with edges of the wanted lengths",
+                 options.name + ": about " + short_number(tets) + " tets with edges of the target lengths",
                  "give larger ones");
   return options.target_tets == 0 && !options.sizes ? 0 : static_cast<std::size_t>(std::max(1.0, tets));
 }
@@ -84,7 +84,7 @@ void check_options(const SimplifyOptions& options) {
       !((options.tolerance > 0 || options.sizes) && options.schedule == Schedule::tuned))
     throw UsageError("a target of 0 tets leaves nothing; give 1 or more");
   if (!(options.min_edge >= 0) || !(options.max_edge > options.min_edge))
-    throw UsageError("the max edge must be above the min edge, and that at least 0");
+    throw UsageError("the max edge must be above the min edge, and the min edge at least 0");
   if (!(options.tolerance >= 0)) throw UsageError("the tolerance must be at least 0");
   if (!(options.beta > 0) || !(options.gamma >= 0))
     throw UsageError("beta must be above 0 and gamma at least 0");

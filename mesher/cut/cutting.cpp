@@ -69,7 +69,7 @@ Vec3 edge_cut(const LabelledLattice& lattice, Index a, Index b) {
 /// Raises coordinates below `smallest` to it and lowers the others so that the sum stays 1. Returns them
 /// unchanged if none is below.
 template <int N>
-Eigen::Matrix<double, N, 1> kept_off_the_ends(const Eigen::Matrix<double, N, 1>& shares, double smallest) {
+Eigen::Matrix<double, N, 1> clamp_barycentric(const Eigen::Matrix<double, N, 1>& shares, double smallest) {
   Eigen::Matrix<double, N, 1> excess = (shares.array() - smallest).max(0.0);
   const double sum = excess.sum();
   // Make all equal if nothing is left to distribute or if the sum is not finite.
@@ -95,7 +95,7 @@ Vec3 meeting_point(const LabelledLattice& lattice, const std::array<Index, N>& c
   }
   right[N - 1] = 1;
   const Eigen::Matrix<double, N, 1> shares =
-      kept_off_the_ends<N>(equations.partialPivLu().solve(right), smallest);
+      clamp_barycentric<N>(equations.partialPivLu().solve(right), smallest);
   Vec3 point = Vec3::Zero();
   for (int c = 0; c < N; ++c) point += shares[c] * lattice.positions[corners[c]];
   return point;
@@ -131,7 +131,7 @@ Vec3 tet_cut(const LabelledLattice& lattice, const Tet& t) {
              &d = lattice.positions[t[3]];
   const double whole = tet_volume(a, b, c, d);
   const Eigen::Vector4d shares =
-      kept_off_the_ends<4>(Eigen::Vector4d(tet_volume(middle, b, c, d), tet_volume(a, middle, c, d),
+      clamp_barycentric<4>(Eigen::Vector4d(tet_volume(middle, b, c, d), tet_volume(a, middle, c, d),
                                            tet_volume(a, b, middle, d), tet_volume(a, b, c, middle)) /
                                whole,
                            CutTuning::Cuts::min_tet_share);
@@ -366,7 +366,7 @@ CutMesh cut_lattice(LabelledLattice lattice) {
       lattice.tets.give_back(part);
     }
   });
-  lattice.forget_stars();
+  lattice.free_stars();
   std::size_t size = 0;
   for (const std::vector<CutTet>& part : parts) size += part.size();
   CutMesh mesh;

@@ -315,7 +315,7 @@ class Mover {
   /// Moves a point to the position in `places` that gives the best worst piece of its star, if that improves
   /// it. The point keeps its region, and lattice tets keep solid angles of 0.1 sr. Returns true if the point
   /// was moved.
-  bool take_best(Index p, std::span<const Vec3> places, FieldSampler& sampler) {
+  bool move_to_best(Index p, std::span<const Vec3> places, FieldSampler& sampler) {
     const bool on = lattice_.is_on[p];
     const Vec3 from = lattice_.positions[p];
     Vec3 best_place = from;
@@ -355,7 +355,7 @@ class Mover {
     for (double share : {0.15, 0.25, 0.35, 0.5})
       if (const double step = share * c.room() - std::abs(value); step > 0)
         places.push_back(lattice_.positions[p] - gradient * (step / slope));
-    return take_best(p, places, sampler);
+    return move_to_best(p, places, sampler);
   }
 
   /// Finds the tets with a piece below the limit among `count` tets with the numbers `tet(i)`, and moves
@@ -405,7 +405,7 @@ class Mover {
                                             std::max(tolerance::min_squared_slope, gradient.squaredNorm())));
       places.push_back(from + Snapping::step_to_middle * to_middle);
     }
-    take_best(p, places, sampler);
+    move_to_best(p, places, sampler);
   }
 
   /// The region of the smallest distance among the other regions of the star; on_interface if there is none.

@@ -70,7 +70,7 @@ void check_labels(const Grid& grid, const std::string& file, const std::string& 
     if (!std::in_range<MaterialTag>(value))
       throw InputError(file, 0,
                        "the grid '" + name + "' has the value " + std::to_string(value) +
-                           ", which is no label of 32 bits; number the labels from 0");
+                           ", which is not a 32-bit label; number the labels from 0");
   };
   check(grid.background());
   for (auto value = grid.cbeginValueAll(); value; ++value) check(*value);

@@ -16,7 +16,7 @@ namespace {
 std::vector<VdbGrid> take_apart(const std::string& file) {
   const std::string bytes = read_whole_file(file);
   try {
-    return take_apart_vdb(bytes);
+    return split_vdb(bytes);
   } catch (const std::runtime_error& e) {
     throw InputError(file, 0, e.what());
   }
@@ -60,13 +60,14 @@ std::vector<NamedSurface> read_level_sets(const std::string& file) {
     try {
       out.surface = level_set->zero_surface();
     } catch (const std::domain_error&) {
-      throw InputError(file, 0, "the level set '" + name + "' has a transform without sense");
+      throw InputError(file, 0, "the level set '" + name + "' has an invalid transform");
     }
     if (out.surface.triangles.empty())
-      throw InputError(file, 0, "the level set '" + name + "' is empty: its values do not pass 0; remove it");
+      throw InputError(file, 0,
+                       "the level set '" + name + "' is empty: its values do not cross 0; remove it");
     for (const Vec3& p : out.surface.points)
       if (!p.allFinite())
-        throw InputError(file, 0, "the level set '" + name + "' has values or a transform without sense");
+        throw InputError(file, 0, "the level set '" + name + "' has invalid values or an invalid transform");
   }
   if (surfaces.empty())
     throw InputError(file, 0,
@@ -96,7 +97,7 @@ std::optional<LabelVolume> read_label_grid(const std::string& file, std::size_t 
   if (grid.alone.empty())
     throw InputError(file, 0,
                      "the grid '" + grid.name +
-                         "' is no tree of its own of the usual kind (5, 4, 3); "
+                         "' does not have its own standard 5-4-3 tree; "
                          "write a copy of it");
   return labels_from_vdb(grid, max_voxels, file);
 }

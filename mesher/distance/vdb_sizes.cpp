@@ -91,7 +91,7 @@ class VdbSizes : public SizeSource {
                          "the grid '" + field() + "' has the value " + short_number(value) + " at " +
                              place_text(world(first)) +
                              "; an edge length must be a number above 0: give it one, or set voxels inactive "
-                             "where none is wanted");
+                             "where no length applies");
     });
     if (!any)
       throw InputError(
@@ -147,7 +147,7 @@ std::unique_ptr<const SizeSource> read_vdb_sizes(const std::string& file) {
   {
     const std::string bytes = read_whole_file(file);
     try {
-      grids = take_apart_vdb(bytes);
+      grids = split_vdb(bytes);
     } catch (const std::runtime_error& e) {
       throw InputError(file, 0, e.what());
     }
@@ -156,14 +156,13 @@ std::unique_ptr<const SizeSource> read_vdb_sizes(const std::string& file) {
   const std::string name = chosen.name;
   if (!chosen.fault.empty()) throw InputError(file, 0, chosen.fault);
   if (chosen.alone.empty())
-    throw InputError(
-        file, 0,
-        "the grid '" + name + "' is no tree of its own of the usual kind (5, 4, 3); write a copy of it");
+    throw InputError(file, 0,
+                     "the grid '" + name + "' does not have its own standard 5-4-3 tree; write a copy of it");
   DistanceGrid grid = DistanceGrid::from_vdb(chosen, file);
   const GridPlacement placement = grid.placement();
   const Eigen::Matrix3d inverse = placement.directions.inverse();
   if (!placement.origin.allFinite() || !placement.directions.allFinite() || !inverse.allFinite())
-    throw InputError(file, 0, "the grid '" + name + "' has a transform without sense");
+    throw InputError(file, 0, "the grid '" + name + "' has an invalid transform");
   auto sizes = std::make_unique<VdbSizes>(std::move(grid), placement, name);
   sizes->check(file);
   return sizes;

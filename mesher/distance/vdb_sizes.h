@@ -18,7 +18,7 @@ namespace tetwright {
 /// plane. An active tile counts as its voxels. for_each_value() visits each active voxel outside tiles, and
 /// the eight corner voxels of each active tile.
 ///
-/// \throws InputError beginning with `file`: not a .vdb file, damaged or cut short, no such grid or several
+/// \throws InputError beginning with `file`: not a .vdb file, damaged or truncated, no such grid or several
 ///   (with a list), no active voxel, an active value that is not finite or not above 0 (with its position), a
 ///   transform that is not linear or not invertible
 std::unique_ptr<const SizeSource> read_vdb_sizes(const std::string& file);

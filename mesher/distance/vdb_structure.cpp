@@ -27,7 +27,7 @@ constexpr std::string_view half_suffix = "_HalfFloat", usual_tree = "_5_4_3";
 
 constexpr std::size_t values_of(int level) { return std::size_t{1} << 3 * node_levels[level]; }
 
-[[noreturn]] void damaged() { throw std::runtime_error("is damaged or cut short; write it again"); }
+[[noreturn]] void damaged() { throw std::runtime_error("is damaged or truncated; write it again"); }
 
 void require(bool condition) {
   if (!condition) damaged();
@@ -239,7 +239,7 @@ std::string file_of_one(std::string_view header, std::string_view type, std::uin
 
 }  // namespace
 
-std::vector<VdbGrid> take_apart_vdb(std::string_view bytes) {
+std::vector<VdbGrid> split_vdb(std::string_view bytes) {
   if (!bytes.starts_with(magic)) throw std::runtime_error("is not a .vdb file");
   Cursor cursor(bytes);
   cursor.take(magic.size());
@@ -301,7 +301,7 @@ std::vector<VdbGrid> take_apart_vdb(std::string_view bytes) {
     }
     if (!has_offsets)
       throw std::runtime_error("has a grid of another kind, '" + grid.name +
-                               "', and no offsets to pass it over; write it again with its level sets alone");
+                               "', and no offsets to skip it; write it again with its level sets alone");
     cursor.move_to(end);
   }
   return grids;

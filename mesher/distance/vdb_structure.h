@@ -28,7 +28,7 @@ struct VdbGrid {
 /// Grids after a damaged grid of doubles or integers can be read if the file gives the end of that grid.
 ///
 /// \throws std::runtime_error with the rest of a sentence that begins with the file's name: not a .vdb file,
-///   damaged or cut short, another format
-std::vector<VdbGrid> take_apart_vdb(std::string_view bytes);
+///   damaged or truncated, another format
+std::vector<VdbGrid> split_vdb(std::string_view bytes);
 
 }  // namespace tetwright

@@ -36,7 +36,7 @@ class Chosen {
     std::sort(sorted.begin(), sorted.end());
     for (const LabelRange& range : sorted) {
       if (range.first > range.second)
-        throw UsageError("the labels " + range_text(range) + " are none; the smaller one comes first");
+        throw UsageError("the label range " + range_text(range) + " is empty; give the smaller label first");
       if (range.first <= outside_ && outside_ <= range.second)
         throw UsageError("label " + std::to_string(outside_) +
                          " of --labels is the outside label, which is " +
@@ -177,7 +177,7 @@ std::vector<LabelMaterial> name_materials(const LabelChoice& choice, const std::
   if (outside != materials.end())
     refuse_name(choice, outside->tag,
                 "label " + std::to_string(outside->tag) +
-                    " is called 'outside', which is what is around all of them; make it the outside label "
+                    " is called 'outside', which is the name of the outside; make it the outside label "
                     "with --outside-label, or give it another name");
   return materials;
 }

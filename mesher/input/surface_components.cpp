@@ -386,8 +386,8 @@ std::vector<SurfaceComponent> split_into_components(const std::vector<Vec3>& poi
               crowded_place, "kept; the surface may touch or cross itself there");
   add_finding(findings, DiagnosticCode::inner_walls_dropped, "triangles of inner walls and fins", walls,
               wall_place, "left out");
-  add_finding(findings, DiagnosticCode::triangles_turned, "triangles wound against their neighbours", turned,
-              turned_place, "turned over");
+  add_finding(findings, DiagnosticCode::triangles_turned, "triangles oriented against their neighbours",
+              turned, turned_place, "reversed");
   add_finding(findings, DiagnosticCode::holes_closed, "boundary edges of holes", free, free_place,
               "holes are closed where the winding number is 1/2");
   return patches.components();

@@ -239,19 +239,19 @@ ArrangedComponents arrange_components(const std::vector<Vec3>& points, const std
     if (!against && toggles) cavities.add(place);
     if (!against && !toggles) alike.add(place);
   }
-  add_finding(findings, DiagnosticCode::components_turned, "components turned inside out", outwards.count,
-              outwards.place, "turned outwards, each with what it encloses");
+  add_finding(findings, DiagnosticCode::components_turned, "components oriented inwards", outwards.count,
+              outwards.place, "reoriented outwards, each with everything that it encloses");
   add_finding(findings, DiagnosticCode::components_unclear, "open components whose outside is unclear",
               unclear.count, unclear.place, "kept as most of their triangles are wound");
-  add_finding(findings, DiagnosticCode::components_alike, "enclosed components wound like their enclosers",
-              alike.count, alike.place, "part of what surrounds them");
+  add_finding(findings, DiagnosticCode::components_alike, "enclosed components oriented like their enclosers",
+              alike.count, alike.place, "part of the solid around them");
   add_finding(findings, DiagnosticCode::components_alternate,
-              "enclosed components wound like their enclosers", cavities.count, cavities.place,
-              "solid and cavity take turns, as asked for");
+              "enclosed components oriented like their enclosers", cavities.count, cavities.place,
+              "solid and cavity alternate, as requested");
   add_finding(findings, DiagnosticCode::cavities_filled, "cavities", filled.count, filled.place,
-              "filled, as asked for");
+              "filled, as requested");
   add_finding(findings, DiagnosticCode::components_separated, "enclosed components", materials.count,
-              materials.place, "each a material of its own, as asked for");
+              materials.place, "each a material of its own, as requested");
   return result;
 }
 

@@ -98,7 +98,7 @@ Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<
     for (std::size_t k = 0; k < 3; ++k) {
       if (t[k] >= surface.points.size())
         throw InputError(file, 0,
-                         "a triangle names point " + std::to_string(t[k]) + " of " +
+                         "a triangle refers to point " + std::to_string(t[k]) + " of " +
                              std::to_string(surface.points.size()));
       used[t[k]] = 1;
       u[k] = first[t[k]];
@@ -144,7 +144,7 @@ Cleaned clean(const TriangleMesh& surface, const std::string& file, std::vector<
   result.points = keep_used(surface.points, result.triangles);
   if (flats == result.triangles.size())
     throw InputError(file, 0, "all triangles are flat, without any area; write the surface again");
-  add_finding(findings, DiagnosticCode::points_merged, "points at the place of another one", merged,
+  add_finding(findings, DiagnosticCode::points_merged, "points that coincide with an earlier one", merged,
               merged_place, "merged");
   add_finding(findings, DiagnosticCode::points_unused, "points that no triangle uses", unused, unused_place,
               "left out");
@@ -205,7 +205,7 @@ SurfaceRepair repair_surface(const TriangleMesh& surface, const std::string& fil
   if (!crossing.empty())
     add_finding(result.findings, DiagnosticCode::surface_self_intersects, "pairs of triangles that intersect",
                 crossing.size(), cleaned.points[cleaned.triangles[crossing[0].first][0]],
-                "kept; what is inside any part is inside");
+                "kept; points inside any part count as inside");
   const ArrangedComponents arranged =
       arrange_components(cleaned.points, cleaned.triangles, components, crossing, nested, result.findings);
   std::vector<char> elsewhere = arranged.redundant;

@@ -153,7 +153,7 @@ void make_tile(const LabelInput& labels, int t, const std::array<int, 3>& tiles,
 class Growth {
  public:
   explicit Growth(std::size_t regions)
-      : growth_(regions, 0), step_(regions, 0), volumes_(regions, 0), give_(regions, 1) {}
+      : growth_(regions, 0), step_(regions, 0), volumes_(regions, 0), response_(regions, 1) {}
 
   const std::vector<float>& growth() const { return growth_; }  ///< by region, voxels
   /// True if the last adjust() changed it.
@@ -213,8 +213,8 @@ class Growth {
       double expected = 0;
       for (const Contact& c : contacts(r)) expected += c.faces * (step_[r] - step_[c.with]);
       if (std::abs(expected) > LabelTuning::Growth::min_informative * volumes_[r])
-        give_[r] = std::clamp((now[r] - volumes_[r]) / expected, LabelTuning::Growth::min_response,
-                              LabelTuning::Growth::max_response);
+        response_[r] = std::clamp((now[r] - volumes_[r]) / expected, LabelTuning::Growth::min_response,
+                                  LabelTuning::Growth::max_response);
     }
   }
 
@@ -238,7 +238,7 @@ class Growth {
     }
     for (int sweep = 0; sweep < LabelTuning::Growth::sweeps; ++sweep)
       for (RegionIndex r : off) {
-        double gain = (voxels_of(labels, r) - volumes_[r]) / give_[r];
+        double gain = (voxels_of(labels, r) - volumes_[r]) / response_[r];
         double faces = 0;
         for (const Contact& c : contacts(r)) {
           gain += c.faces * step_[c.with];
@@ -268,7 +268,7 @@ class Growth {
   bool begun_ = false;
   std::vector<float> growth_;
   std::vector<double> step_, volumes_;
-  std::vector<double> give_;  ///< by region: gain in voxels per face and voxel of growth
+  std::vector<double> response_;  ///< by region: gain in voxels per face and voxel of growth
   std::vector<std::size_t> starts_;
   std::vector<Contact> contacts_;  ///< rows by region
 };

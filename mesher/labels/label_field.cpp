@@ -293,7 +293,7 @@ class LabelField::Sampler final : public FieldSampler {
 };
 
 bool LabelField::is_certain(const Vec3& point) const {
-  if (LabelTuning::Field::promised_cells_per_voxel * voxels().cell_size >
+  if (LabelTuning::Field::min_cells_per_voxel * voxels().cell_size >
       (1 + tolerance::coinciding_cells) * shared_->voxel)
     return false;
   const Vec3 at = to_nodes(point);

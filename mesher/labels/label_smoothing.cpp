@@ -261,8 +261,8 @@ void LabelSmoother::distances_from_shares(int margin, std::span<const float> gro
   // Enforce own labels again, because shares below 0 and above 1 were clamped. No distance leaves the band.
   for (const MixedNode& n : mixed_) {
     // If the label must shrink, its fixed depth is reduced.
-    const float by_hand = distance_from_lack(n.lack) + std::min(0.0F, growth[labels_[n.own]]);
-    const float lead = 2 * std::max(Smoothing::min_distance, by_hand);
+    const float fixed_depth = distance_from_lack(n.lack) + std::min(0.0F, growth[labels_[n.own]]);
+    const float lead = 2 * std::max(Smoothing::min_distance, fixed_depth);
     float others = HUGE_VALF;
     for (std::uint16_t l : labels_near(n)) {
       if (l == n.own) continue;

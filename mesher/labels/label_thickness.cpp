@@ -191,7 +191,7 @@ class ThinLabelFinder {
   /// voxel. Larger ones would break the guarantees for finer cells.
   int coarsest_interface_level(int coarsest) const {
     constexpr double max_cell =
-        1 / LabelTuning::Field::promised_cells_per_voxel + tolerance::coinciding_cells;  // voxels
+        1 / LabelTuning::Field::min_cells_per_voxel + tolerance::coinciding_cells;  // voxels
     while (coarsest > 0 && std::ldexp(frame_.cell_size, coarsest) > max_cell * spacing_.minCoeff())
       --coarsest;
     return coarsest;

@@ -142,7 +142,7 @@ void LabelledLattice::list_star_regions(std::size_t region_count) {
   values_.assign(regions_.size(), 0);
 }
 
-void LabelledLattice::forget_stars() {
+void LabelledLattice::free_stars() {
   stars = {};
   std::vector<std::size_t>().swap(starts_);
   std::vector<RegionIndex>().swap(regions_);

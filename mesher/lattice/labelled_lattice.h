@@ -66,7 +66,7 @@ class LabelledLattice {
   /// Finds the regions of all stars and sets their values to 0.
   void list_star_regions(std::size_t region_count);
   /// Frees the stars, their regions and values, which must not be used afterwards.
-  void forget_stars();
+  void free_stars();
 
  private:
   std::vector<std::size_t> starts_;  ///< by slot

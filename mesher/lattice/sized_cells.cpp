@@ -63,9 +63,10 @@ RefinementRegions find_sized_cells(const MaterialField& field, const MaxCell& ma
           }
         });
     total += 8 * static_cast<double>(split.size());
-    require_memory(EstimateTuning::Memory::program + EstimateTuning::Memory::per_leaf * total,
-                   "cells of " + short_number(side / 2 * frame.cell_size) + ", for edges as short as asked,",
-                   "give a larger --max-edge, or larger sizes");
+    require_memory(
+        EstimateTuning::Memory::program + EstimateTuning::Memory::per_leaf * total,
+        "cells of " + short_number(side / 2 * frame.cell_size) + ", for edges as short as requested,",
+        "give a larger --max-edge, or larger sizes");
     cells.clear();
     for (const MortonKey key : split)
       for (MortonKey k = 0; k < 8; ++k) cells.push_back(key << 3 | k);

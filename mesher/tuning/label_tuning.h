@@ -81,7 +81,7 @@ struct LabelTuning {
   /// Distances at any point.
   struct Field {
     /// Min cells per voxel edge for which the guarantees hold.
-    static constexpr double promised_cells_per_voxel = 2;
+    static constexpr double min_cells_per_voxel = 2;
     /// Share of the band from which a distance counts as clamped: rounding and interpolation give slightly
     /// less than the band.
     static constexpr double clamped_share = 0.98;

@@ -156,7 +156,7 @@ void SurfaceGrid::rebuild(const EditableMesh& mesh, double min_cell, const std::
   };
   const auto by_ids = [](const Known& a, const Known& b) { return a.ids < b.ids; };
   std::vector<Known> before;
-  for (const std::uint32_t record : standing()) {
+  for (const std::uint32_t record : records_in_use()) {
     Triangle ids = records_[record].ids;
     for (Index& p : ids) p = new_points[p];
     std::sort(ids.begin(), ids.end());
@@ -194,8 +194,8 @@ void SurfaceGrid::insert(std::uint32_t record) {
   });
 }
 
-bool SurfaceGrid::hits_standing(const MeshTriangle& t, std::span<const std::uint32_t> removed,
-                                std::vector<std::array<Index, 2>>* narrow) const {
+bool SurfaceGrid::intersects_existing(const MeshTriangle& t, std::span<const std::uint32_t> removed,
+                                      std::vector<std::array<Index, 2>>* narrow) const {
   const Cell3 low = cell_at(low_corner(t));
   const Box box = box_of(t);
   bool hit = false;
@@ -226,7 +226,7 @@ bool SurfaceGrid::embedded() const {
   parallel_for(0, records_.size(), Grains::surface_triangles, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end && !meet.load(std::memory_order_relaxed); ++i) {
       const auto self = static_cast<std::uint32_t>(i);
-      if (hits_standing(records_[i], {&self, 1})) meet.store(true, std::memory_order_relaxed);
+      if (intersects_existing(records_[i], {&self, 1})) meet.store(true, std::memory_order_relaxed);
     }
   });
   return !meet;
@@ -264,7 +264,7 @@ bool SurfaceGrid::test(Edit& edit) const {
   find_records(edit);
   edit.narrow_edges.clear();
   for (const Added& a : edit.added)
-    if (hits_standing(a.triangle, edit.removed_records, &edit.narrow_edges)) return false;
+    if (intersects_existing(a.triangle, edit.removed_records, &edit.narrow_edges)) return false;
   for (std::size_t i = 0; i < edit.added.size(); ++i) {
     const Vec3 low = low_corner(edit.added[i].triangle), high = high_corner(edit.added[i].triangle);
     edit.low = i == 0 ? low : edit.low.cwiseMin(low);
@@ -352,7 +352,7 @@ FacePatches SurfaceGrid::patches() const {
   return out;
 }
 
-std::vector<std::uint32_t> SurfaceGrid::standing() const {
+std::vector<std::uint32_t> SurfaceGrid::records_in_use() const {
   std::vector<std::uint32_t> seen;
   for (const Cell& cell : cells_)
     for (const Entry& e : cell.entries) seen.push_back(e.record);
@@ -363,7 +363,7 @@ std::vector<std::uint32_t> SurfaceGrid::standing() const {
 
 std::vector<MeshTriangle> SurfaceGrid::triangles() const {
   std::vector<MeshTriangle> out;
-  for (std::uint32_t i : standing()) out.push_back(records_[i]);
+  for (std::uint32_t i : records_in_use()) out.push_back(records_[i]);
   return out;
 }
 

@@ -158,10 +158,10 @@ class SurfaceGrid {
   void insert(std::uint32_t record);
   /// Whether t intersects a triangle whose record is not among `removed`. Appends to `narrow`, unless it is
   /// null, the edges at which t and another triangle are nearly folded together.
-  bool hits_standing(const MeshTriangle& t, std::span<const std::uint32_t> removed,
-                     std::vector<std::array<Index, 2>>* narrow = nullptr) const;
+  bool intersects_existing(const MeshTriangle& t, std::span<const std::uint32_t> removed,
+                           std::vector<std::array<Index, 2>>* narrow = nullptr) const;
   /// The records in use, ascending.
-  std::vector<std::uint32_t> standing() const;
+  std::vector<std::uint32_t> records_in_use() const;
   /// The record of an existing triangle.
   /// \pre Ids ascending.
   std::uint32_t record_of(const MeshTriangle& t) const;

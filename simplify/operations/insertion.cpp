@@ -138,7 +138,7 @@ Outcome propose(Workspace& ws, const BlockRules& rules, InsertionPlace place) {
   star.compute_gradients();
   bool good = false;
   if (place == InsertionPlace::best && dimension > 0)
-    good = find_place(ws, rules, dimension, limit, placement);
+    good = find_position(ws, rules, dimension, limit, placement);
   if (!good) {
     if (!(star.worst > limit)) return Outcome::quality;
     placement.position = star.centre_position;

@@ -8,7 +8,7 @@ namespace tetwright {
 /// Position of an inserted point.
 enum class InsertionPlace {
   centre,  ///< the centroid of the tet, face or edge, as in section 4 of the paper
-  /// The best position that find_place() reaches from the centroid. Surrounding tets that are well visible
+  /// The best position that find_position() reaches from the centroid. Surrounding tets that are well visible
   /// from the new point are removed as well, so that a tet need not become four tets of similar shape.
   best
 };

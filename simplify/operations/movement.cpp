@@ -13,9 +13,9 @@ namespace tetwright {
 namespace {
 
 /// Fills the proposal's edit with the interface triangles before and after the move. False if an added one is
-/// too far from the reference. At junctions that points may leave, find_place() has tested the point itself
-/// instead: if a junction curve has a loop smaller than a tet, a triangle's centroid may have no interface of
-/// its two regions nearby.
+/// too far from the reference. At junctions that points may leave, find_position() has tested the point
+/// itself instead: if a junction curve has a loop smaller than a tet, a triangle's centroid may have no
+/// interface of its two regions nearby.
 bool surface_edit(Workspace& ws, const BlockRules& rules, const Vec3& to) {
   const Star& star = ws.star;
   const bool by_point = rules.surface.leave_surface && star.dimension() < 2;

@@ -291,7 +291,7 @@ class PlacementSearch {
 
 }  // namespace
 
-bool find_place(Workspace& ws, const BlockRules& rules, int dimension, float limit, Placement& found) {
+bool find_position(Workspace& ws, const BlockRules& rules, int dimension, float limit, Placement& found) {
   return PlacementSearch(ws, rules, dimension).run(limit, found);
 }
 
@@ -336,7 +336,7 @@ Outcome optimise(Workspace& ws, const BlockRules& rules) {
   star.compute_gradients();
   if (dimension == 0 && !may_leave(star, rules)) return Outcome::material_rule;
   Placement& place = ws.placement;
-  if (!find_place(ws, rules, dimension, Smoothing::min_gain * star.worst, place)) return Outcome::quality;
+  if (!find_position(ws, rules, dimension, Smoothing::min_gain * star.worst, place)) return Outcome::quality;
   return move_to(ws, rules, place.position, place.qualities);
 }
 

@@ -19,7 +19,7 @@ namespace tetwright {
 /// \param found receives the position, if there is one.
 /// \return whether a position was found.
 /// \pre Gradients are computed.
-bool find_place(Workspace& ws, const BlockRules& rules, int dimension, float limit, Placement& found);
+bool find_position(Workspace& ws, const BlockRules& rules, int dimension, float limit, Placement& found);
 
 /// Moves the centre of the gathered star towards a centroid (section 4 of the paper): within a material of
 /// all neighbours, on an interface of the neighbours on it, on a junction curve of the two neighbours along
@@ -29,7 +29,7 @@ bool find_place(Workspace& ws, const BlockRules& rules, int dimension, float lim
 ///   volume.
 Outcome smooth(Workspace& ws, const BlockRules& rules);
 
-/// Moves the centre of the gathered star to the position found by find_place(); corners only with
+/// Moves the centre of the gathered star to the position found by find_position(); corners only with
 /// SurfaceBounds::leave_surface.
 ///
 /// \return as smooth().

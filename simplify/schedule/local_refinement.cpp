@@ -55,7 +55,7 @@ void halve(const ImprovementTools& tools, const std::vector<TetSnapshot>& tets, 
 /// Tells whether rounds still gain: whether the number of remaining tets reached a new minimum recently.
 class Gain {
  public:
-  bool goes_on(std::size_t left) {
+  bool continues(std::size_t left) {
     idle_ = left < min_left_ ? 0 : idle_ + 1;
     min_left_ = std::min(min_left_, left);
     return idle_ <= Refinement::max_idle;
@@ -74,7 +74,7 @@ void refine_bad_tets(const ImprovementTools& tools, ImprovementArea& area, Impro
   Gain gain;
   for (int i = 0; i < Refinement::max_rounds && plan.max_rounds > 0; ++i) {
     const std::vector<TetSnapshot> bad = area.bad_tets(bound);
-    if (bad.empty() || !gain.goes_on(bad.size())) return;
+    if (bad.empty() || !gain.continues(bad.size())) return;
     halve(tools, area.tets_around(bad), plan, angle, false);
     plan.max_rounds -= improve_area(tools, area, plan, 1);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 // Fuzzes the reader of .vdb files. OpenVDB trusts all sizes, so it must receive only data validated by
-// take_apart_vdb(). The result is a surface or a volume, or an InputError.
+// split_vdb(). The result is a surface or a volume, or an InputError.
 #include <stdexcept>
 
 #include "mesher/distance/openvdb_grids.h"
@@ -15,7 +15,7 @@ void run_vdb(std::string_view bytes) {
   constexpr std::size_t max_voxels = 1'000'000;
   std::vector<VdbGrid> grids;
   try {
-    grids = take_apart_vdb(bytes);
+    grids = split_vdb(bytes);
   } catch (const std::runtime_error&) {  // the caller adds the file's name
     return;
   }

@@ -271,7 +271,7 @@ std::vector<NamedSurface> split_solids(TriangleMesh surface, const std::string& 
 /// A level set is a grid of floats of the class "level set", or without a class but with a positive
 /// background and values of both signs. Other grids are ignored.
 ///
-/// \throws InputError beginning with `file`: not a .vdb file, damaged or cut short, no level set in it (with
+/// \throws InputError beginning with `file`: not a .vdb file, damaged or truncated, no level set in it (with
 ///   a list of the grids), two of one name, one without a surface
 std::vector<NamedSurface> read_level_sets(const std::string& file);
 
@@ -282,7 +282,7 @@ std::vector<NamedSurface> read_level_sets(const std::string& file);
 ///
 /// \param max_voxels 2^31 or fewer
 /// \return nothing for a file with a level set or without such a grid
-/// \throws InputError beginning with `file`: not a .vdb file, damaged or cut short, several such grids (with
+/// \throws InputError beginning with `file`: not a .vdb file, damaged or truncated, several such grids (with
 ///   their names), no active voxel, more than `max_voxels` voxels, values beyond 32 bits, a transform that is
 ///   not linear or not invertible
 std::optional<LabelVolume> read_label_grid(const std::string& file,

@@ -205,7 +205,7 @@ TEST_F(VdbFiles, SaysWhatIsWrong) {
   empty->setName("gone");
   empty->setGridClass(openvdb::GRID_LEVEL_SET);
   write_grids(file, {ball("b"), empty});
-  EXPECT_EQ(message_of(file), "the level set 'gone' is empty: its values do not pass 0; remove it");
+  EXPECT_EQ(message_of(file), "the level set 'gone' is empty: its values do not cross 0; remove it");
   write_grids(file, {ball("b"), ball("b", 5)});
   EXPECT_EQ(message_of(file), "has two level sets called 'b'; rename one");
 

@@ -44,7 +44,7 @@ TEST(SurfaceComponents, OneSidedSurfacesAreRefused) {
 TEST(SurfaceComponents, TheMajorityDecides) {
   const TriangleMesh sphere = make_sphere(1);
   const SurfaceRepair input = repair_surface(partly_turned_over(sphere, 3), "");
-  EXPECT_EQ(found(input, "triangles wound against their neighbours"), (sphere.triangles.size() + 2) / 3);
+  EXPECT_EQ(found(input, "triangles oriented against their neighbours"), (sphere.triangles.size() + 2) / 3);
   EXPECT_EQ(input.findings.size(), 1u) << findings_text(input);
   EXPECT_EQ(input.surface.closed, sphere.triangles.size());
   EXPECT_NEAR(winding_at(input.surface, {0.1, 0.2, 0.3}), 1, 1e-9);

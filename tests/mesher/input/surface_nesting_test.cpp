@@ -47,14 +47,14 @@ TEST(SurfaceNesting, AHollowSphereStaysHollow) {
   EXPECT_NEAR(right.surface.volume, 7 * unit_sphere, 0.3);
   const SurfaceRepair inverted = Nest{{-1, 1}}.input();
   EXPECT_EQ(windings(inverted, 2), (std::vector<long>{1, 0}));
-  EXPECT_EQ(findings_text(inverted), "1 components turned inside out; ");
+  EXPECT_EQ(findings_text(inverted), "1 components oriented inwards; ");
 }
 
 TEST(SurfaceNesting, WoundAlikeItIsPartOfTheSolid) {
   for (const int sign : {1, -1}) {
     const SurfaceRepair input = Nest{{sign, sign}}.input();
     EXPECT_EQ(windings(input, 2), (std::vector<long>{1, 1}));
-    EXPECT_EQ(found(input, "enclosed components wound like their enclosers"), 1u);
+    EXPECT_EQ(found(input, "enclosed components oriented like their enclosers"), 1u);
     EXPECT_NEAR(input.surface.volume, 8 * unit_sphere, 0.3);
   }
 }
@@ -70,8 +70,9 @@ TEST(SurfaceNesting, ThreeSpheres) {
 TEST(SurfaceNesting, CavityTakesTurns) {
   for (const std::vector<int>& signs : {std::vector<int>{1, 1, 1}, {-1, -1, 1}, {1, -1, 1}, {-1, -1, -1}})
     EXPECT_EQ(windings(Nest{signs, NestedRule::cavity}.input(), 3), (std::vector<long>{1, 0, 1}));
-  EXPECT_EQ(found(Nest{{1, 1}, NestedRule::cavity}.input(), "enclosed components wound like their enclosers"),
-            1u);
+  EXPECT_EQ(
+      found(Nest{{1, 1}, NestedRule::cavity}.input(), "enclosed components oriented like their enclosers"),
+      1u);
   EXPECT_EQ(findings_text(Nest{{1, -1}, NestedRule::cavity}.input()), "");
 }
 
@@ -107,7 +108,7 @@ TEST(SurfaceNesting, OverlappingSpheresOfOppositeSenseBecomeOne) {
         const TriangleMesh a = make_sphere(1), b = make_sphere(radius, {apart, 0.01, 0.02});
         const SurfaceRepair input = repair_surface(joined(a, turned_over(b)), "", rule);
         EXPECT_EQ(input.surface.closed, a.triangles.size() + b.triangles.size());
-        EXPECT_EQ(found(input, "components turned inside out"), 1u);
+        EXPECT_EQ(found(input, "components oriented inwards"), 1u);
         EXPECT_NEAR(input.surface.volume, enclosed_volume(a) + enclosed_volume(b), 1e-9);
         EXPECT_GT(winding_at(input.surface, {0.5 * apart, 0.3, 0.1}), 0.9);
         EXPECT_GT(winding_at(input.surface, {apart + 0.9 * radius, 0.05, 0.05}), 0.9);
@@ -153,13 +154,13 @@ TEST(SurfaceNesting, ABowlHasAnOutsideASheetHasNone) {
   TriangleMesh bowl = make_sphere(1), sheet;
   std::erase_if(bowl.triangles, [&](const Triangle& t) { return bowl.points[t[0]].z() > 0.2; });
   const SurfaceRepair turned = repair_surface(turned_over(bowl), "");
-  EXPECT_EQ(found(turned, "components turned inside out"), 1u);
+  EXPECT_EQ(found(turned, "components oriented inwards"), 1u);
   EXPECT_GT(winding_at(turned.surface, {0, 0, -0.5}), 0.5);
   sheet.points = {{0, 0, 0.1}, {1, 0, 0}, {1, 1, 0.1}, {0, 1, 0}};
   sheet.triangles = {{0, 2, 1}, {0, 3, 2}};
   const SurfaceRepair kept = repair_surface(sheet, "");
   EXPECT_EQ(found(kept, "open components whose outside is unclear"), 1u);
-  EXPECT_EQ(found(kept, "components turned inside out"), 0u);
+  EXPECT_EQ(found(kept, "components oriented inwards"), 0u);
   EXPECT_LT(winding_at(kept.surface, {0.4, 0.5, -0.01}), 0);
 }
 

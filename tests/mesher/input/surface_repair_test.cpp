@@ -72,7 +72,7 @@ TEST(SurfaceRepair, MergesASoupAndDropsWhatIsDegenerate) {
   EXPECT_NEAR(s.volume, 6, 1e-12);
   EXPECT_NEAR(s.area, 22, 1e-12);
   EXPECT_EQ(s.high, Vec3(1, 2, 3));
-  EXPECT_EQ(found(input, "points at the place of another one"), 28u);
+  EXPECT_EQ(found(input, "points that coincide with an earlier one"), 28u);
   EXPECT_EQ(found(input, "points that no triangle uses"), 1u);
   EXPECT_EQ(found(input, "triangles with equal corners"), 12u);
   EXPECT_EQ(found(input, "repeated triangles"), 12u);
@@ -123,7 +123,7 @@ TEST(SurfaceRepair, AllowsHoles) {
   sphere.triangles.pop_back();
   const SurfaceRepair input = repair_surface(turned_over(sphere), "");
   EXPECT_EQ(found(input, "boundary edges of holes"), 3u);
-  EXPECT_EQ(found(input, "components turned inside out"), 1u);
+  EXPECT_EQ(found(input, "components oriented inwards"), 1u);
   EXPECT_EQ(input.surface.closed, 0u);
   EXPECT_GT(winding_at(input.surface, {0, 0, 0}), 0.9);
   EXPECT_NEAR(input.surface.volume, sphere_volume, 0.05);
