@@ -348,7 +348,7 @@ TEST_F(VdbFiles, SaysWhatIsWrongWithLabels) {
   write_grids(file, {wide});
   EXPECT_EQ(
       label_message_of(file),
-      "the grid 'wide' has the value 2147483648, which is no label of 32 bits; number the labels from 0");
+      "the grid 'wide' has the value 2147483648, which is not a 32-bit label; number the labels from 0");
   labels->setTransform(
       openvdb::math::Transform::createFrustumTransform(openvdb::BBoxd({0, 0, 0}, {10, 10, 10}), 0.5, 10));
   write_grids(file, {labels});
