@@ -7,6 +7,7 @@
 
 #include "simplify/constraints/constrained_mesh.h"
 #include "simplify/constraints/surface_projection.h"
+#include "simplify/mesh/input_check.h"
 #include "simplify/mesh/neighbourhood.h"
 #include "simplify/remesh/change_journal.h"
 #include "simplify/remesh/field_carrier.h"
@@ -46,12 +47,17 @@ std::vector<double> renumbered_values(const Field& field, const std::vector<Inde
   return values;
 }
 
+TetMesh&& checked(TetMesh&& mesh, const RemesherOptions& options) {
+  check_arrays(mesh, options.frozen, options.name);
+  return std::move(mesh);
+}
+
 }  // namespace
 
 struct Remesher::Impl {
   Impl(TetMesh&& input, const RemesherOptions& given, Renumbering* numbers)
       : options(given),
-        constrained(std::move(input), given.name, given.frozen, given.fix_boundary, true),
+        constrained(checked(std::move(input), given), given.name, given.frozen, given.fix_boundary, true),
         runner(mesh, grid, constrained.ledger, given.seed, given.batch_size, given.progress),
         recorder(mesh, runner, given.report, given.progress) {
     recorder.begin_stage("improve");

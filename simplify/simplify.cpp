@@ -9,6 +9,7 @@
 
 #include "common/message_text.h"
 #include "simplify/constraints/surface_samples.h"
+#include "simplify/mesh/input_check.h"
 #include "simplify/schedule/bulk_improvement.h"
 #include "simplify/schedule/edge_length_adaptation.h"
 #include "simplify/schedule/engine.h"
@@ -58,8 +59,9 @@ double first_bound(double min_solid_angle) {
 }
 
 /// Validates the input of both calls before any work.
-void check(const TetMesh& mesh, const std::string& name) {
+void check(const TetMesh& mesh, const std::vector<std::uint8_t>& frozen, const std::string& name) {
   if (mesh.tets.empty()) throw InputError(name, 0, "no tets in it");
+  check_arrays(mesh, frozen, name);
   require_memory(Memory::program_bytes + Memory::bytes_per_tet * static_cast<double>(mesh.tets.size()),
                  name + ": work on its " + std::to_string(mesh.tets.size()) + " tets",
                  "free some, or use a machine or a container limit with more");
@@ -206,7 +208,7 @@ void close(Engine& engine, const SimplifyOptions& options, std::size_t target, s
 
 TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report, Progress* progress) {
   check_options(options);
-  check(mesh, options.name);
+  check(mesh, options.frozen, options.name);
   if (out_of_time(progress)) return not_simplified(std::move(mesh), options, report, progress);
   const bool tuned = options.schedule == Schedule::tuned;
   const auto start = std::chrono::steady_clock::now();
@@ -337,7 +339,7 @@ TetMesh improve_bad_regions(TetMesh&& mesh, const ImproveOptions& options, std::
 }  // namespace
 
 TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* report, Progress* progress) {
-  check(mesh, options.name);
+  check(mesh, options.frozen, options.name);
   if (out_of_time(progress)) return unchanged(std::move(mesh), report);
   const auto start = std::chrono::steady_clock::now();
   const auto count = static_cast<double>(mesh.tets.size());

@@ -6,9 +6,12 @@
 #include <chrono>
 #include <cstring>
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "tests/simplify/meshes.h"
 #include "tetwright/mesh_quality.h"
+#include "tetwright/remesher.h"
 #include "tetwright/resources.h"
 
 namespace tetwright::simplify_test {
@@ -51,6 +54,48 @@ TEST(Simplify, ReachesTheCountAndKeepsTheTopology) {
             (std::vector<MaterialPair>{{4, std::nullopt}, {4, 7}, {7, std::nullopt}}));
   EXPECT_FALSE(report.iterations.empty());
   EXPECT_EQ(report.iterations.back().tets_after, after.tets.size());
+}
+
+// A caller's mesh is not one that a reader has checked.
+TEST(Simplify, ArraysThatDoNotFitTogetherAreRefused) {
+  struct Case {
+    const char* what;
+    std::function<void(TetMesh&)> damage;
+    const char* message;
+  };
+  const std::vector<Case> cases{
+      {"no materials", [](TetMesh& m) { m.materials.clear(); }, "but 0 materials; give one for each tet"},
+      {"an index out of range", [](TetMesh& m) { m.tets[7][2] = 1u << 30; },
+       "tet 7 refers to point 1073741824"},
+      {"a field of points",
+       [](TetMesh& m) {
+         m.point_fields = {{.name = "heat", .values = {1, 2}}};
+       },
+       "the field 'heat' has 2 values"},
+      {"a field of tets",
+       [](TetMesh& m) { m.cell_fields = {{.name = "load", .components = 0, .values = {}}}; },
+       "the field 'load' has 0 values"},
+      {"an interface",
+       [](TetMesh& m) {
+         m.interfaces = {{{0, 1, 1u << 30}, 1, {}}};
+       },
+       "an interface triangle refers to a point that does not exist"}};
+  for (const Case& c : cases) {
+    TetMesh mesh = grid_mesh(3);
+    c.damage(mesh);
+    const auto expect = [&](const char* by, const std::function<void()>& work) {
+      try {
+        work();
+        ADD_FAILURE() << by << ": " << c.what << " was not refused";
+      } catch (const InputError& e) {
+        EXPECT_NE(std::string(e.what()).find(c.message), std::string::npos) << by << ": " << e.what();
+      }
+    };
+    expect("simplify", [&] { (void)simplify(mesh, {.target_tets = 10}); });
+    expect("improve", [&] { (void)improve(mesh, {}); });
+    expect("Remesher", [&] { Remesher remesher(mesh, RemesherOptions{}); });
+  }
+  EXPECT_THROW((void)simplify(grid_mesh(3), {.target_tets = 10, .frozen = {1}}), UsageError);
 }
 
 // An operation that never succeeds in the optimised build would be silently broken. Insertions in tets and

@@ -189,7 +189,9 @@ struct SimplifyReport {
 ///
 /// \param report receives statistics; may be null.
 /// \param progress may be null.
-/// \throws InputError if a coordinate is not finite, a tet repeats a point or a face has more than two tets.
+/// \throws InputError if the arrays of the mesh do not fit together (no material for each tet, an index out
+///   of range, a field of the wrong size), a coordinate is not finite, a tet repeats a point or a face has
+///   more than two tets.
 /// \throws OutputError if there is not enough memory.
 /// \throws UsageError for invalid options.
 /// \throws Interrupted when cancelled.

@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string>
 
-namespace tetwright::acceptance_test {
+namespace tetwright::severities_test {
 namespace {
 
 Severity decided(DiagnosticCode code, const AcceptanceOptions& acceptance, bool on_purpose = false) {
@@ -23,7 +23,7 @@ Severity decided(DiagnosticCode code, const AcceptanceOptions& acceptance, bool 
   return report.diagnostics.front().severity;
 }
 
-TEST(Acceptance, OfEveryKind) {
+TEST(Severities, OfEveryKind) {
   for (const DiagnosticKind& kind : diagnostic_kinds()) {
     const bool yields = kind.yields != Yields::never;
     EXPECT_TRUE(!yields || kind.severity == Severity::shortfall) << kind.name;
@@ -37,7 +37,7 @@ TEST(Acceptance, OfEveryKind) {
   }
 }
 
-TEST(Acceptance, StrictMakesAShortfallOfNotes) {
+TEST(Severities, StrictMakesAShortfallOfNotes) {
   PrepareReport report;
   decide_severities({.strict = true}, report);
   EXPECT_FALSE(report.falls_short());
@@ -54,7 +54,7 @@ TEST(Acceptance, StrictMakesAShortfallOfNotes) {
   EXPECT_EQ(shortfalls_of(report), std::vector<std::string>{"--strict: 1 note: a.ply: 2 points (merged)"});
 }
 
-TEST(Acceptance, EveryCodeIsInTheGuide) {
+TEST(Severities, EveryCodeIsInTheGuide) {
   std::ifstream in(TETWRIGHT_DATA "/guide/messages.md");
   ASSERT_TRUE(in);
   std::stringstream page;
@@ -67,4 +67,4 @@ TEST(Acceptance, EveryCodeIsInTheGuide) {
 }
 
 }  // namespace
-}  // namespace tetwright::acceptance_test
+}  // namespace tetwright::severities_test
