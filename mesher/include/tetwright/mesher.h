@@ -86,7 +86,7 @@ struct ExpectedSolid {
   SurfaceFlaw flaw = SurfaceFlaw::none;
   SolidShape shape;  ///< input units; derived from the surfaces as given, with a flaw from the distances
   /// A second estimate, derived from the surfaces if they are closed, manifold and do not meet each other.
-  std::optional<SolidShape> by_flawed_surface;
+  std::optional<SolidShape> by_flawed_surface = {};
   /// Shells smaller than this (input units cubed) are not significant; with a flaw, this is the volume of a
   /// cell.
   double min_volume = 0;

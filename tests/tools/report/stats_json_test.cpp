@@ -152,8 +152,9 @@ TEST(StatsJson, ProgressAsLinesOfJsonAndTheLog) {
   int percent = 0;
   for (std::string line; std::getline(lines, line);) {
     const auto j = nlohmann::json::parse(line);
-    if (stages.empty() || stages.back() != j["stage"]) {
-      stages.push_back(j["stage"]);
+    const std::string stage = j["stage"];
+    if (stages.empty() || stages.back() != stage) {
+      stages.push_back(stage);
       EXPECT_EQ(j["percent"], 0);
     } else {
       EXPECT_GT(j["percent"], percent);
