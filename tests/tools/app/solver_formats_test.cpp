@@ -171,7 +171,7 @@ TEST_F(SolverFormats, NoFileReplacesAnother) {
   expect_refused(call + (f / "m.vtu") + " --output-format inp", 2, {"\"inp\"", "abaqus"});
   expect_refused(call + (f / "no") + "/m.node", 5, {"no"});
   expect_refused(call + (f / "m.vtk") + " --output-format xdmf", 2,
-                 {"m.vtk: xdmf is several files", ".xdmf"});
+                 {"m.vtk: xdmf writes several files", ".xdmf"});
   // The other files of an output are checked, too.
   expect_status("sample two_materials -o " + (f / "x.ele"), 0);
   expect_refused("prepare " + (f / "x.ele") + " --target-tets 9 -o " + (f / "x.node"), 2, {"x.ele"});
