@@ -12,9 +12,9 @@ unless they are a file. Attributes may follow the language of a block:
     status=N      the expected exit status, instead of 0
     file=NAME     the block is written to this file and not run; a script or an input for later blocks
 
---python-path is the folder of the Python package, --prefix the one in which CMake finds the installed library. Without
-them the blocks that need them (`import tetwright`, and `sh` that calls CMake) are left out. Status 1 if a block fails,
-or if a package is missing that must not be; blocks that are left out are listed.
+--python-path is the folder of the Python package, --prefix that of the installed library, which blocks find as
+~/tetwright-installed. Without them the blocks that need them (`import tetwright`, and `sh` that calls CMake) are left
+out. Status 1 if a block fails, or if a package is missing that must not be; blocks that are left out are listed.
 """
 import argparse
 import importlib.util
@@ -55,10 +55,14 @@ class Runner:
         os.symlink(os.path.abspath(options.program), os.path.join(tools, "tetwright"))
         os.symlink(PYTHON, os.path.join(tools, "python3"))
         self._environment = {**os.environ, "PATH": tools + os.pathsep + os.environ["PATH"],
-                             "PYTHONDONTWRITEBYTECODE": "1", "OMP_NUM_THREADS": "1", "CMAKE_GENERATOR": "Ninja",
+                             "PYTHONDONTWRITEBYTECODE": "1", "OMP_NUM_THREADS": "1",
                              "PYTHONPATH": options.python_path or ""}
         if options.prefix:
-            self._environment["CMAKE_PREFIX_PATH"] = options.prefix
+            # The pages install the library into ~/tetwright-installed.
+            home = os.path.join(folder, ".home")
+            os.mkdir(home)
+            os.symlink(os.path.abspath(options.prefix), os.path.join(home, "tetwright-installed"))
+            self._environment["HOME"] = home
 
     def why_not(self, block):
         """Returns why a block is not run, or an empty text."""
