@@ -102,7 +102,7 @@ TEST_F(Formats, SeveralFilesHaveExtensionsOfTheirOwn) {
   for (const auto& [name, format] : {std::pair{"m.vtk", "xdmf"}, {"m.h5", "xdmf"}, {"m.xdmf", "tetgen"}}) {
     const std::string message =
         error_of<UsageError>([&, n = name, f = format] { write_tet_mesh(one_tet(), path(n), nullptr, f); });
-    EXPECT_NE(message.find(std::string(name) + ": " + format + " is several files"), std::string::npos)
+    EXPECT_NE(message.find(std::string(name) + ": " + format + " writes several files"), std::string::npos)
         << message;
   }
   EXPECT_EQ(files(), 0u);

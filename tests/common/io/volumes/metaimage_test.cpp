@@ -110,7 +110,7 @@ TEST(MetaImage, BadInput) {
   expect_refused(replaced(with(""), "MET_UCHAR", "MET_OTHER"), "line 5", "\"MET_OTHER\"");
   expect_refused(with("ElementNumberOfChannels = 3"), "line 6", "3 channels");
   expect_refused(with("CompressedData = maybe"), "line 6", "\"maybe\"");
-  expect_refused(with("Offset = 1 2"), "line 6", "2 numbers");
+  expect_refused(with("Offset = 1 2"), "line 6", "expected 3 numbers as offset, found 2");
   expect_refused(with("Offset = 1 2 nan"), "not finite");
   expect_refused(with("ElementSpacing = 1 2 0"), "along axis 2 is zero");
   expect_refused(with("TransformMatrix = 1 0 0 0 1 0 1 1 0"), "in one plane");
