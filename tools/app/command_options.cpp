@@ -193,7 +193,7 @@ void add_material_options(CLI::App& app, CommandLine& c) {
 }
 
 void add_strict(CLI::App& app, CommandLine& c) {
-  app.add_flag("--strict", c.options.acceptance.strict, "Status 1 if there is any note");
+  app.add_flag("--strict", c.options.acceptance.strict, "Status 1 if there is any note that is certain");
 }
 
 void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) {
