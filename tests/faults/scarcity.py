@@ -75,8 +75,9 @@ def two_processes(p, arguments, out):
         results.append(out.read_bytes())
     for _ in range(3):
         processes = [p.start([*arguments, "--seed", seed]) for seed in ("1", "2")]
-        for process in processes:
-            error = process.communicate()[1]
+        # Both have ended before the folder is examined: one that still writes has a temporary file.
+        errors = [process.communicate()[1] for process in processes]
+        for process, error in zip(processes, errors):
             outcomes[expect(p, "two processes with one output", process.returncode, error, {0}, out, results)] += 1
     return outcomes
 
