@@ -13,9 +13,10 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 # Files of other projects, of the build and of users.
 OTHERS = {
-    "FEBioMeshSection4.cpp", "FEBioMeshDomainsSection4.cpp", "FindOpenVDB.cmake", "MeshGmshLoader.cpp", "MeshVTKLoader.cpp",
+    "FindOpenVDB.cmake", "MeshGmshLoader.cpp", "MeshVTKLoader.cpp",
     "hdf5.h", "libdeflate.h", "lz4.h", "lzma.h", "main.cpp", "sysexits.h", "three.js", "three.min.js", "vtkCellType.h", "zip.h", "zlib.h",
 }
+OTHER_PREFIXES = ("FEBio",)
 NAME = re.compile(r"(?<![\w./<-])((?:[\w-]+/)*[\w-]+\.(?:h|cpp|py|js|css|cmake))\b(?![\w/(])")
 COMMENT = {
     ".h": re.compile(r"//.*"), ".cpp": re.compile(r"//.*"), ".js": re.compile(r"//.*"),
@@ -35,7 +36,8 @@ def main():
         text = (ROOT / path).read_text(encoding="utf-8", errors="replace")
         for comment in COMMENT[suffix].finditer(text):
             for name in NAME.findall(comment[0]):
-                if name not in ends and name.split("/")[-1] not in OTHERS:
+                file = name.split("/")[-1]
+                if name not in ends and file not in OTHERS and not file.startswith(OTHER_PREFIXES):
                     print(f"{path}:{text.count(chr(10), 0, comment.start()) + 1}: there is no file {name}")
                     wrong += 1
     return 1 if wrong else 0
