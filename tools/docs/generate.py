@@ -80,6 +80,8 @@ def options_of(help_text):
         kind, default = value, ""
         if "=" in value and value not in ("NAME=FILE", "NAME=THICKNESS"):
             kind, default = value.split("=", 1)
+        elif bracketed := re.match(r"^(\S+) \[(.*)\]$", value):  # CLI11 2.4
+            kind, default = bracketed[1], bracketed[2]
         found.append((head[1].split(","), kind, default, required, description))
     return found
 
