@@ -38,8 +38,8 @@ TEST(MshReader, Version41) {
   EXPECT_TRUE(r.mesh.cell_fields.empty());
   EXPECT_EQ(r.mesh.patch_groups,
             (std::map<InterfacePatch, SurfaceRegion>{{{{7, std::nullopt}, 1}, {7, "skin"}}}));
-  EXPECT_EQ(r.dropped,
-            (std::vector<Dropped>{{"point elements", 1}, {"further physical groups of entities (\"8\")", 1}}));
+  EXPECT_EQ(r.dropped, (std::vector<Dropped>{{"point elements", 1},
+                                             {"further physical groups of entities (\"8\")", 1}}));
 }
 
 TEST(MshReader, SurfacesWithSeveralAndTurnedGroups) {

@@ -182,9 +182,9 @@ TEST(Msh, WhatGmshWrites) {
   EXPECT_EQ(r.mesh.material_names, (std::map<MaterialTag, std::string>{{7, "my bone"}}));
   EXPECT_EQ(r.mesh.patch_groups,
             (std::map<InterfacePatch, SurfaceRegion>{{{{7, std::nullopt}, 1}, {7, "skin"}}}));
-  EXPECT_EQ(r.dropped,
-            (std::vector<Dropped>{
-                {"point elements", 1}, {"tets with partition numbers", 1}, {"sections (\"$ElementNodeData\")", 1}}));
+  EXPECT_EQ(r.dropped, (std::vector<Dropped>{{"point elements", 1},
+                                             {"tets with partition numbers", 1},
+                                             {"sections (\"$ElementNodeData\")", 1}}));
 }
 
 TEST(Msh, OtherVolumeElementsAreRefusedByKindAndNumber) {
