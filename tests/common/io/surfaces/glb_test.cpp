@@ -157,7 +157,7 @@ TEST(Glb, BadInput) {
   expect_input_error(read_glb, old, "version 1");
   std::string broken = good;
   broken[20] = '?';
-  expect_input_error(read_glb, broken, "not JSON");
+  expect_input_error(read_glb, broken, "not valid JSON");
   const auto refused = [](const std::vector<std::pair<std::string, json>>& changes, const std::string& first,
                           const std::string& second = "") {
     json scene = tet_scene();
