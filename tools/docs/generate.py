@@ -336,7 +336,9 @@ PAGES = {"options.md": options_page, "formats.md": formats_page, "statistics.md"
 
 
 def main():
-    program, check = sys.argv[1], "--check" in sys.argv[2:]
+    if len(sys.argv) < 2 or sys.argv[2:] not in ([], ["--check"]) or not os.access(sys.argv[1], os.X_OK):
+        raise SystemExit("usage: generate.py TETWRIGHT [--check]")
+    program, check = sys.argv[1], sys.argv[2:] == ["--check"]
     changed = False
     with tempfile.TemporaryDirectory(prefix="tetwright-docs-") as folder:
         for name, make in PAGES.items():

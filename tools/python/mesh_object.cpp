@@ -127,6 +127,8 @@ void write_mesh_files(Mesh& mesh, const std::string& path, const std::string& fo
   PrepareReport report;
   report.patches = patches_of_input(mesh.mesh);
   find_unwritten(line, mesh.mesh, report);
+  // The interpreter's lock protects the mesh's own lists from other threads.
+  const py::gil_scoped_acquire acquire;
   for (std::string& note : notes_of(report)) mesh.notes.push_back(std::move(note));
 }
 
