@@ -394,13 +394,13 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
       field, std::move(interface_voxels), std::move(sheets.finer), options, MemoryModel{}, std::move(report),
       stages, [&](const std::vector<std::uint8_t>& there) { validate_materials_left(input, *field, there); });
   const auto has_groups = [](const MesherInput::Body& body) { return !body.surface.groups.empty(); };
-  give_up_where_surfaces_meet(input, dense.mesh, patches);
+  if (!input.complex) give_up_where_surfaces_meet(input, dense.mesh, patches);
   give_up_where_gaps_are_closed(input, dense.report, patches);
   report_features(input, patches, dense.report);
-  if (std::any_of(patches.begin(), patches.end(), has_patches) ||
+  if (input.complex || std::any_of(patches.begin(), patches.end(), has_patches) ||
       std::any_of(input.bodies.begin(), input.bodies.end(), has_groups)) {
     stages.begin("creases");
-    keep_visible(dense.report.creases, input, dense);
+    if (!input.complex) keep_visible(dense.report.creases, input, dense);
     allow_for_chamfers(dense.report);
     const auto features = std::make_shared<const FeatureSurface>(
         input, patches, CellTuning::Patches::corner_reach * dense.report.cell_size, dense.field);

@@ -35,14 +35,19 @@ class CreasePoints {
  public:
   CreasePoints(std::span<const Vec3> points, const std::vector<SurfaceCreases::Segment>& segments)
       : points_(points) {
-    for (const SurfaceCreases::Segment& s : segments)
+    for (std::size_t i = 0, j = 0; i < segments.size(); i = j) {
+      // Where more than two patches meet, an edge has several segments.
+      std::vector<std::array<std::uint16_t, 2>> patches;
+      for (; j < segments.size() && segments[j].ends == segments[i].ends; ++j)
+        patches.push_back(segments[j].patches);
       for (std::size_t k = 0; k < 2; ++k) {
-        AtPoint& at = at_[s.ends[k]];
-        if (at.count == 0) at.patches = s.patches;
-        at.mixed |= at.patches != s.patches;
-        if (at.count < 2) at.others[at.count] = s.ends[1 - k];
+        AtPoint& at = at_[segments[i].ends[k]];
+        if (at.count == 0) at.patches = patches;
+        at.mixed |= at.patches != patches;
+        if (at.count < 2) at.others[at.count] = segments[i].ends[1 - k];
         ++at.count;
       }
+    }
   }
 
   std::vector<Index> corners(double reach) const {
@@ -72,8 +77,8 @@ class CreasePoints {
 
  private:
   struct AtPoint {
-    std::size_t count = 0;
-    std::array<std::uint16_t, 2> patches{};
+    std::size_t count = 0;                               ///< edges of creases
+    std::vector<std::array<std::uint16_t, 2>> patches;   ///< of the first one, by pairs
     std::array<Index, 2> others{};
     bool mixed = false;
     bool is_plain() const { return count == 2 && !mixed; }

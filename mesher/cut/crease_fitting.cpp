@@ -187,25 +187,29 @@ class Fitter {
 /// aligned patch.
 FeatureSurface::Patch patch_of(const TetMesh& mesh, const InterfaceTriangle& t, const CreaseLabels& labels,
                                const FeatureSurface& surface, double cell) {
-  const std::optional<std::size_t> body = surface.body_of(t);
-  if (!body) return surface.no_patch();
+  const std::optional<std::size_t> sheet = surface.sheet_of(t);
+  if (!sheet) return surface.no_patch();
   PatchSet candidates;
   bool first = true;
   for (const Index p : t.ids) {
     const FeatureLabel& label = labels.of(p);
     if (label.kind == Kind::none) continue;
-    candidates = first ? label.patches : candidates.common(label.patches);
+    PatchSet own;
+    for (const FeatureSurface::Patch patch : label.patches)
+      if (surface.sheet_of(patch) == *sheet) own.insert(patch);
+    candidates = first ? own : candidates.common(own);
     first = false;
   }
   if (candidates.size() == 1) return *candidates.begin();
   if (candidates.size() == 0)
     for (const Index p : t.ids)
-      for (const FeatureSurface::Patch patch : labels.of(p).patches) candidates.insert(patch);
+      for (const FeatureSurface::Patch patch : labels.of(p).patches)
+        if (surface.sheet_of(patch) == *sheet) candidates.insert(patch);
   const Vec3 &a = mesh.points[t.ids[0]], &b = mesh.points[t.ids[1]], &c = mesh.points[t.ids[2]];
   const Vec3 centre = (a + b + c) / 3, normal = (b - a).cross(c - a).normalized();
   if (candidates.size() == 0) {
     const auto place =
-        surface.nearest(centre, *body, Fitting::target_reach * cell, t.other ? nullptr : &normal);
+        surface.nearest(centre, *sheet, Fitting::target_reach * cell, t.other ? nullptr : &normal);
     return place ? place->patch : surface.no_patch();
   }
   FeatureSurface::Patch best = *candidates.begin();

@@ -73,11 +73,13 @@ void CreaseLabels::label_points() {
         const Vec3& a = mesh_.points[face.ids[0]];
         normal += (mesh_.points[face.ids[1]] - a).cross(mesh_.points[face.ids[2]] - a);
       }
-      const std::optional<std::size_t> body = surface_.body_of(first);
-      if (!one_pair || !body) continue;
+      const std::optional<std::size_t> sheet = surface_.sheet_of(first);
+      if (!one_pair && surface_.has_junctions())
+        labels_[i] = junction_label(mesh_.points[points_[i]], sheets_at(static_cast<Index>(i)));
+      if (!one_pair || !sheet) continue;
       normal.normalize();
       // Between two materials either may be the body.
-      const auto place = surface_.nearest(mesh_.points[points_[i]], *body, Labelling::surface_reach * cell_,
+      const auto place = surface_.nearest(mesh_.points[points_[i]], *sheet, Labelling::surface_reach * cell_,
                                           first.other ? nullptr : &normal);
       if (place) labels_[i] = {Kind::patch, {place->patch}, no_index, {}};
     }
@@ -106,18 +108,65 @@ void CreaseLabels::smooth_labels() {
   labels_ = std::move(smoothed);
 }
 
-bool CreaseLabels::crosses(Index u, Index v) const {
-  const FeatureLabel &a = labels_[number_[u]], &b = labels_[number_[v]];
-  return a.kind != Kind::none && b.kind != Kind::none && !a.patches.meets(b.patches);
+PatchSet CreaseLabels::on_sheet(const PatchSet& patches, std::size_t sheet) const {
+  PatchSet own;
+  for (const FeatureSurface::Patch p : patches)
+    if (surface_.sheet_of(p) == sheet) own.insert(p);
+  return own;
 }
 
-std::vector<std::array<Index, 2>> CreaseLabels::crossing_edges() const {
-  std::vector<std::array<Index, 2>> edges;
-  for (const InterfaceTriangle& t : mesh_.interfaces)
+/// The sheets of the faces at a boundary point; empty if a face lies on none.
+std::set<std::size_t> CreaseLabels::sheets_at(Index number) const {
+  std::set<std::size_t> sheets;
+  for (const Index t : triangles_at_[number]) {
+    const auto sheet = surface_.sheet_of(mesh_.interfaces[t]);
+    if (!sheet) return {};
+    sheets.insert(*sheet);
+  }
+  return sheets;
+}
+
+/// The label of a point where several sheets meet: the nearest curve of theirs, with a patch of each sheet.
+FeatureLabel CreaseLabels::junction_label(const Vec3& p, const std::set<std::size_t>& sheets) const {
+  if (sheets.size() < 2) return {};
+  const auto place =
+      surface_.nearest_crease(p, Labelling::surface_reach * cell_, [&](const FeatureSurface::PatchPair& pair) {
+        const std::size_t a = surface_.sheet_of(pair[0]), b = surface_.sheet_of(pair[1]);
+        return a != b && sheets.contains(a) && sheets.contains(b);
+      });
+  if (!place) return {};
+  FeatureLabel label{Kind::crease, {place->patches[0], place->patches[1]}, no_index, place->patches};
+  // The same curve separates further patches.
+  for (std::size_t known = 0; known != label.patches.size();) {
+    known = label.patches.size();
+    const auto next = surface_.nearest_crease(
+        place->point, Labelling::same_curve * cell_, [&](const FeatureSurface::PatchPair& pair) {
+          return label.patches.contains(pair[0]) != label.patches.contains(pair[1]) &&
+                 sheets.contains(surface_.sheet_of(pair[0])) && sheets.contains(surface_.sheet_of(pair[1]));
+        });
+    if (!next) break;
+    for (const FeatureSurface::Patch patch : next->patches) label.patches.insert(patch);
+  }
+  return label;
+}
+
+bool CreaseLabels::crosses(const SheetEdge& edge) const {
+  const FeatureLabel &a = labels_[number_[edge.u]], &b = labels_[number_[edge.v]];
+  if (a.kind == Kind::none || b.kind == Kind::none) return false;
+  const PatchSet own = on_sheet(a.patches, edge.sheet), other = on_sheet(b.patches, edge.sheet);
+  return own.size() > 0 && other.size() > 0 && !own.meets(other);
+}
+
+std::vector<CreaseLabels::SheetEdge> CreaseLabels::crossing_edges() const {
+  std::vector<SheetEdge> edges;
+  for (const InterfaceTriangle& t : mesh_.interfaces) {
+    const auto sheet = surface_.sheet_of(t);
+    if (!sheet) continue;
     for (int k = 0; k < 3; ++k) {
       const Index u = t.ids[k], v = t.ids[(k + 1) % 3];
-      if (crosses(u, v)) edges.push_back({std::min(u, v), std::max(u, v)});
+      if (const SheetEdge e{std::min(u, v), std::max(u, v), *sheet}; crosses(e)) edges.push_back(e);
     }
+  }
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   return edges;
@@ -131,7 +180,8 @@ void CreaseLabels::take_corners() {
   std::vector<ProjectionTree::Item> items;
   for (Index i = 0; i < points_.size(); ++i) {
     positions.push_back(mesh_.points[points_[i]]);
-    if (labels_[i].kind == Kind::patch) items.push_back({{i, i, i}, {i, 0, 0}});
+    if (labels_[i].kind == Kind::patch || labels_[i].kind == Kind::crease)
+      items.push_back({{i, i, i}, {i, 0, 0}});
   }
   const ProjectionTree tree(std::move(positions), std::move(items));
   struct Taken {
@@ -149,6 +199,21 @@ void CreaseLabels::take_corners() {
     });
     if (beside != taken.end()) {
       for (const FeatureSurface::Patch p : corner.patches) labels_[beside->number].patches.insert(p);
+      continue;
+    }
+    std::set<std::size_t> sheets;
+    for (const FeatureSurface::Patch p : corner.patches) sheets.insert(surface_.sheet_of(p));
+    if (sheets.size() > 1) {
+      // A vertex where the same sheets meet.
+      const auto hit = tree.nearest_of(
+          corner.point, Labelling::junction_reach * cell_, [&](const ProjectionTree::Item& item) {
+            return labels_[item.kind[0]].kind == Kind::crease && sheets_at(item.kind[0]) == sheets;
+          });
+      if (hit) {
+        const Index number = tree.items()[hit->item].kind[0];
+        labels_[number] = {Kind::corner, meeting, c, {}};
+        taken.push_back({c, number});
+      }
       continue;
     }
     const auto fits = [&](const ProjectionTree::Item& item, std::size_t min_patches) {
@@ -177,8 +242,10 @@ void CreaseLabels::take_corners() {
   }
 }
 
-std::optional<CreaseLabels::Crossing> CreaseLabels::find_crossing(Index u, Index v) const {
-  const PatchSet &a = labels_[number_[u]].patches, &b = labels_[number_[v]].patches;
+std::optional<CreaseLabels::Crossing> CreaseLabels::find_crossing(const SheetEdge& edge) const {
+  const Index u = edge.u, v = edge.v;
+  const std::size_t sheet = edge.sheet;
+  const PatchSet a = on_sheet(labels_[number_[u]].patches, sheet), b = on_sheet(labels_[number_[v]].patches, sheet);
   const Vec3 &p = mesh_.points[u], &q = mesh_.points[v];
   const Vec3 along = q - p;
   Crossing crossing{u, v, 0.5, {}, {}};
@@ -200,7 +267,8 @@ std::optional<CreaseLabels::Crossing> CreaseLabels::find_crossing(Index u, Index
     return crossing;
   // If the patches between the two are too narrow for the cells, their creases are merged.
   if (!find([&](const Pair& pair) {
-        return a.contains(pair[0]) || a.contains(pair[1]) || b.contains(pair[0]) || b.contains(pair[1]);
+        return surface_.sheet_of(pair[0]) == sheet && surface_.sheet_of(pair[1]) == sheet &&
+               (a.contains(pair[0]) || a.contains(pair[1]) || b.contains(pair[0]) || b.contains(pair[1]));
       }))
     return {};
   const auto at = surface_.onto_crease_between(p + crossing.share * along, crossing.crease,
@@ -209,7 +277,8 @@ std::optional<CreaseLabels::Crossing> CreaseLabels::find_crossing(Index u, Index
   while (!(crossing.patches.meets(a) && crossing.patches.meets(b))) {
     const std::size_t known = crossing.patches.size();
     const auto next = surface_.nearest_crease(*at, Labelling::narrow_reach * cell_, [&](const Pair& pair) {
-      return crossing.patches.contains(pair[0]) != crossing.patches.contains(pair[1]);
+      return surface_.sheet_of(pair[0]) == sheet && surface_.sheet_of(pair[1]) == sheet &&
+             crossing.patches.contains(pair[0]) != crossing.patches.contains(pair[1]);
     });
     if (!next) return {};
     for (const FeatureSurface::Patch patch : next->patches) crossing.patches.insert(patch);
@@ -234,18 +303,19 @@ void CreaseLabels::snap_points() {
     double share;
     Index point, other;
     FeatureLabel label;
+    std::size_t sheet;
   };
-  const std::vector<std::array<Index, 2>> edges = crossing_edges();
+  const std::vector<SheetEdge> edges = crossing_edges();
   std::vector<Snap> snaps = parallel_collect<Snap>(
       0, edges.size(), CutGrains::searches, [&](std::size_t begin, std::size_t end, std::vector<Snap>& out) {
         for (std::size_t e = begin; e < end; ++e) {
-          const auto [u, v] = edges[e];
-          const std::optional<Crossing> c = find_crossing(u, v);
+          const auto [u, v, sheet] = edges[e];
+          const std::optional<Crossing> c = find_crossing(edges[e]);
           if (!c) continue;
           if (labels_[number_[u]].kind == Kind::patch && c->share <= Labelling::max_snap)
-            out.push_back({c->share, u, v, c->label()});
+            out.push_back({c->share, u, v, c->label(), sheet});
           if (labels_[number_[v]].kind == Kind::patch && 1 - c->share <= Labelling::max_snap)
-            out.push_back({1 - c->share, v, u, c->label()});
+            out.push_back({1 - c->share, v, u, c->label(), sheet});
         }
       });
   std::sort(snaps.begin(), snaps.end(), [](const Snap& x, const Snap& y) {
@@ -253,7 +323,7 @@ void CreaseLabels::snap_points() {
     return x.point != y.point ? x.point < y.point : x.other < y.other;
   });
   for (const Snap& s : snaps) {
-    if (label(s.point).kind != Kind::patch || !crosses(s.point, s.other) ||
+    if (label(s.point).kind != Kind::patch || !crosses({s.point, s.other, s.sheet}) ||
         !may_snap(s.point, s.label.patches))
       continue;
     label(s.point) = s.label;
@@ -262,11 +332,12 @@ void CreaseLabels::snap_points() {
 
 void CreaseLabels::resolve_rest() {
   for (int round = 0; round < Labelling::max_rounds; ++round) {
-    const std::vector<std::array<Index, 2>> edges = crossing_edges();
+    const std::vector<SheetEdge> edges = crossing_edges();
     if (edges.empty()) return;
-    for (const auto& [u, v] : edges) {
-      if (!crosses(u, v)) continue;
-      const std::optional<Crossing> c = find_crossing(u, v);
+    for (const SheetEdge& e : edges) {
+      const auto [u, v, sheet] = e;
+      if (!crosses(e)) continue;
+      const std::optional<Crossing> c = find_crossing(e);
       if (!c) continue;
       const bool u_is_nearer = c->share <= 0.5;
       const Index near = u_is_nearer ? u : v;
@@ -325,6 +396,7 @@ void CreaseLabels::dissolve_islands() {
     if (!alone) continue;
     for (const FeatureSurface::Patch patch : shared)
       if (!labels_[i].patches.contains(patch) &&
+          surface_.sheet_of(patch) == surface_.sheet_of(*labels_[i].patches.begin()) &&
           surface_.nearest_of_patch(mesh_.points[points_[i]], patch, Labelling::island_reach * cell_)) {
         labels_[i].patches = {patch};
         break;
@@ -332,12 +404,12 @@ void CreaseLabels::dissolve_islands() {
   }
 }
 
-void CreaseLabels::track(const std::vector<std::array<Index, 2>>& edges) {
+void CreaseLabels::track(const std::vector<SheetEdge>& edges) {
   // Include the neighbours of crossing edges: after a vertex has moved onto a crease, its other edges may
   // cross one.
   std::vector<std::uint8_t> tracked(points_.size(), 0);
-  for (const auto& edge : edges)
-    for (const Index p : edge) {
+  for (const SheetEdge& edge : edges)
+    for (const Index p : {edge.u, edge.v}) {
       tracked[number_[p]] = 1;
       for_neighbours(number_[p], [&](Index q) { tracked[number_[q]] = 1; });
     }
@@ -373,7 +445,10 @@ void CreaseLabels::split(const Crossing& crossing) {
   const auto number = static_cast<Index>(points_.size());
   number_.push_back(number);
   points_.push_back(middle);
-  labels_.push_back(crossing.label());
+  std::set<std::size_t> sheets;
+  for (const Index t : triangles)
+    if (const auto sheet = surface_.sheet_of(mesh_.interfaces[t])) sheets.insert(*sheet);
+  labels_.push_back(sheets.size() > 1 ? junction_label(mesh_.points[middle], sheets) : crossing.label());
   triangles_at_.emplace_back();
   tets_at_.emplace_back();
   // Each tet keeps u; a new tet takes v.

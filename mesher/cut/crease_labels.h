@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <compare>
 #include <cstdint>
+#include <set>
 #include <vector>
 
 #include "mesher/cut/feature_surface.h"
@@ -15,7 +17,7 @@ namespace tetwright {
 /// the first ones inserted.
 class PatchSet {
  public:
-  static constexpr std::size_t capacity = 7;
+  static constexpr std::size_t capacity = 15;
 
   PatchSet() = default;
   PatchSet(std::initializer_list<FeatureSurface::Patch> patches) {
@@ -48,9 +50,9 @@ class PatchSet {
 /// The feature that a boundary vertex represents.
 struct FeatureLabel {
   enum class Kind : std::uint8_t {
-    none,    ///< more than two regions meet here, or the surface is not near
+    none,    ///< the surface is not near, or more than two regions meet in a curve that it does not have
     patch,   ///< one patch
-    crease,  ///< two patches
+    crease,  ///< two patches, or those of a junction: one for each pair of regions
     corner
   };
   Kind kind = Kind::none;
@@ -90,12 +92,21 @@ class CreaseLabels {
   void snap_points();
   void resolve_rest();
   void dissolve_islands();
-  bool crosses(Index u, Index v) const;
-  std::vector<std::array<Index, 2>> crossing_edges() const;
-  std::optional<Crossing> find_crossing(Index u, Index v) const;
+  /// An edge of faces on one sheet.
+  struct SheetEdge {
+    Index u, v;
+    std::size_t sheet;
+    auto operator<=>(const SheetEdge&) const = default;
+  };
+  PatchSet on_sheet(const PatchSet& patches, std::size_t sheet) const;
+  std::set<std::size_t> sheets_at(Index number) const;
+  FeatureLabel junction_label(const Vec3& p, const std::set<std::size_t>& sheets) const;
+  bool crosses(const SheetEdge& edge) const;
+  std::vector<SheetEdge> crossing_edges() const;
+  std::optional<Crossing> find_crossing(const SheetEdge& edge) const;
   bool may_snap(Index point, const PatchSet& patches) const;
   void split(const Crossing& crossing);
-  void track(const std::vector<std::array<Index, 2>>& edges);
+  void track(const std::vector<SheetEdge>& edges);
   template <class Visit>
   void for_neighbours(Index number, const Visit& visit) const;
   FeatureLabel& label(Index point) { return labels_[number_[point]]; }

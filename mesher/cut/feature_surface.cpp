@@ -5,6 +5,8 @@
 #include <map>
 #include <set>
 
+#include "mesher/complex/labelled_complex.h"
+#include "mesher/cut/complex_patches.h"
 #include "mesher/tuning/cut_tuning.h"
 
 namespace tetwright {
@@ -12,44 +14,16 @@ namespace tetwright {
 FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches,
                                double corner_reach, std::shared_ptr<const MaterialField> field)
     : field_(std::move(field)) {
-  std::vector<Vec3> points, crease_points;
-  std::vector<ProjectionTree::Item> triangles, segments;
-  std::size_t first_patch = 0;
+  collected_ = std::make_unique<Collected>();
   for (const MaterialLayer& layer : input.layers) bodies_[layer.tag] = 0;
-  for (std::size_t b = 0; b < input.bodies.size(); ++b) {
-    bodies_[input.bodies[b].tag] = b;
-    const RepairedSurface& surface = input.bodies[b].surface;
-    if (patches[b].verdict == SurfacePatches::Verdict::meeting && !patches[b].any()) {
-      bodies_.erase(input.bodies[b].tag);
-      continue;
-    }
-    const auto first = static_cast<Index>(points.size());
-    const auto patch_of = [&](std::uint16_t local) { return static_cast<Patch>(first_patch + local); };
-    points.insert(points.end(), surface.points.begin(), surface.points.end());
-    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
-      const Triangle& c = surface.triangles[t];
-      triangles.push_back({{first + c[0], first + c[1], first + c[2]},
-                           {patch_of(patches[b].patches[t]), static_cast<std::uint32_t>(b), 0}});
-    }
-    const SurfaceCreases found =
-        find_creases(surface.points, surface.triangles, patches[b].patches, corner_reach);
-    std::map<Index, std::set<Patch>> at_corners;
-    for (const Index c : found.corners) at_corners[c] = {};
-    for (const SurfaceCreases::Segment& s : found.segments) {
-      segments.push_back({{first + s.ends[0], first + s.ends[1], first + s.ends[1]},
-                          {patch_of(s.patches[0]), patch_of(s.patches[1]), 0}});
-      for (const Index end : s.ends)
-        if (const auto corner = at_corners.find(end); corner != at_corners.end())
-          for (const std::uint16_t p : s.patches) corner->second.insert(patch_of(p));
-    }
-    for (const auto& [c, meeting] : at_corners)
-      corners_.push_back({surface.points[c], {meeting.begin(), meeting.end()}});
-    groups_.resize(first_patch + patches[b].count);
-    for (std::size_t t = 0; t < surface.groups.size(); ++t)
-      groups_[patch_of(patches[b].patches[t])] = input.bodies[b].groups[surface.groups[t]];
-    first_patch += patches[b].count;
-  }
-  no_patch_ = static_cast<Patch>(first_patch);
+  for (std::size_t b = 0; b < input.bodies.size(); ++b) bodies_[input.bodies[b].tag] = b;
+  if (input.complex)
+    add_complex(input, patches, corner_reach);
+  else
+    add_bodies(input, patches, corner_reach);
+  no_patch_ = static_cast<Patch>(groups_.size());
+  auto [points, triangles, segments] = std::move(*collected_);
+  collected_.reset();
   creases_ = ProjectionTree(points, std::move(segments));
   std::vector<Vec3> corner_places;
   std::vector<ProjectionTree::Item> corner_items;
@@ -68,22 +42,83 @@ FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<Surfa
   }
 }
 
-std::optional<std::size_t> FeatureSurface::body_of(const InterfaceTriangle& face) const {
+void FeatureSurface::add_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+                                   const std::vector<std::uint16_t>& patches, Patch first_patch,
+                                   double corner_reach) {
+  const auto first = static_cast<Index>(collected_->points.size());
+  const auto patch_of = [&](std::uint16_t local) { return static_cast<Patch>(first_patch + local); };
+  collected_->points.insert(collected_->points.end(), points.begin(), points.end());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const Triangle& c = triangles[t];
+    const Patch patch = patch_of(patches[t]);
+    collected_->triangles.push_back({{first + c[0], first + c[1], first + c[2]},
+                                     {patch, static_cast<std::uint32_t>(sheet_of_patch_[patch]), 0}});
+  }
+  const SurfaceCreases found = find_creases(points, triangles, patches, corner_reach);
+  std::map<Index, std::set<Patch>> at_corners;
+  for (const Index c : found.corners) at_corners[c] = {};
+  for (const SurfaceCreases::Segment& s : found.segments) {
+    collected_->segments.push_back({{first + s.ends[0], first + s.ends[1], first + s.ends[1]},
+                                    {patch_of(s.patches[0]), patch_of(s.patches[1]), 0}});
+    for (const Index end : s.ends)
+      if (const auto corner = at_corners.find(end); corner != at_corners.end())
+        for (const std::uint16_t p : s.patches) corner->second.insert(patch_of(p));
+  }
+  for (const auto& [c, meeting] : at_corners)
+    corners_.push_back({points[c], {meeting.begin(), meeting.end()}});
+}
+
+void FeatureSurface::add_bodies(const MesherInput& input, const std::vector<SurfacePatches>& patches,
+                                double corner_reach) {
+  for (std::size_t b = 0; b < input.bodies.size(); ++b) {
+    const RepairedSurface& surface = input.bodies[b].surface;
+    if (patches[b].verdict == SurfacePatches::Verdict::meeting && !patches[b].any()) {
+      bodies_.erase(input.bodies[b].tag);
+      continue;
+    }
+    const std::size_t first_patch = groups_.size();
+    groups_.resize(first_patch + patches[b].count);
+    sheet_of_patch_.resize(groups_.size(), b);
+    for (std::size_t t = 0; t < surface.groups.size(); ++t)
+      groups_[first_patch + patches[b].patches[t]] = input.bodies[b].groups[surface.groups[t]];
+    add_triangles(surface.points, surface.triangles, patches[b].patches, static_cast<Patch>(first_patch),
+                  corner_reach);
+  }
+}
+
+void FeatureSurface::add_complex(const MesherInput& input, const std::vector<SurfacePatches>& patches,
+                                 double corner_reach) {
+  const ComplexPatches found = complex_patches(input, patches);
+  sheets_ = found.sheets;
+  sheet_of_patch_ = found.sheet_of_patch;
+  groups_ = found.groups;
+  add_triangles(input.complex->points, found.triangles, found.patches, 0, corner_reach);
+}
+
+std::optional<std::size_t> FeatureSurface::sheet_of(const InterfaceTriangle& face) const {
   const auto find = [&](MaterialOrOutside material) -> std::optional<std::size_t> {
     const auto body = material ? bodies_.find(*material) : bodies_.end();
     if (body == bodies_.end()) return {};
     return body->second;
   };
   const std::optional<std::size_t> first = find(face.material), second = find(face.other);
+  if (!sheets_.empty()) {
+    const auto label = [](const std::optional<std::size_t>& body) {
+      return static_cast<RegionIndex>(body ? *body + 1 : outside_region);
+    };
+    const auto known = sheets_.find(std::minmax(label(first), label(second)));
+    if (known == sheets_.end()) return {};
+    return known->second;
+  }
   if (!first || !second) return first ? first : second;
   if (*first == *second) return {};
   return std::max(*first, *second);
 }
 
-std::optional<FeatureSurface::Place> FeatureSurface::nearest(const Vec3& p, std::size_t body, double at_most,
+std::optional<FeatureSurface::Place> FeatureSurface::nearest(const Vec3& p, std::size_t sheet, double at_most,
                                                              const Vec3* facing) const {
   const auto hit = triangles_.nearest_of(p, at_most, [&](const ProjectionTree::Item& item) {
-    if (item.kind[1] != body) return false;
+    if (item.kind[1] != sheet) return false;
     return !facing || normals_[static_cast<std::size_t>(&item - triangles_.items().data())].dot(*facing) >=
                           CutTuning::Labelling::min_facing;
   });

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/geometry/projection_tree.h"
@@ -59,12 +60,17 @@ class FeatureSurface : public ReferenceSurface {
     return corner_points_.nearest(point, {}, max_distance);
   }
 
-  /// The body whose surface a face lies on. Between two materials it is the later body, since later bodies
-  /// carve earlier ones. std::nullopt between layers of one body and on the box of a meshed outside.
-  std::optional<std::size_t> body_of(const InterfaceTriangle& face) const;
-  /// The closest point on a body's surface within `at_most`.
+  /// The sheet that a face lies on. If the surfaces are one complex, the faces between two of its regions are a
+  /// sheet; otherwise each body's surface is one, and a face between two materials lies on that of the later
+  /// body, since later bodies carve earlier ones. std::nullopt between layers of one body, on the box of a
+  /// meshed outside, and between regions that have no face in common in the complex.
+  std::optional<std::size_t> sheet_of(const InterfaceTriangle& face) const;
+  std::size_t sheet_of(Patch patch) const { return sheet_of_patch_[patch]; }
+  /// True if creases include the curves in which three or more sheets meet.
+  bool has_junctions() const override { return !sheets_.empty(); }
+  /// The closest point on a sheet within `at_most`.
   /// \param facing if given, only triangles whose normal is not opposite to it count
-  std::optional<Place> nearest(const Vec3& p, std::size_t body, double at_most,
+  std::optional<Place> nearest(const Vec3& p, std::size_t sheet, double at_most,
                                const Vec3* facing = nullptr) const;
   /// The patch of faces that lie on no surface; queries for it go to the field.
   Patch no_patch() const { return no_patch_; }
@@ -92,11 +98,25 @@ class FeatureSurface : public ReferenceSurface {
  private:
   std::shared_ptr<const MaterialField> field_;
   Patch no_patch_ = 0;
+  void add_complex(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach);
+  void add_bodies(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach);
+  /// Adds triangles with their patches, and the creases between these.
+  void add_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+                     const std::vector<std::uint16_t>& patches, Patch first_patch, double corner_reach);
+
   std::map<MaterialTag, std::size_t> bodies_;  ///< body of each material and layer
+  /// Sheet of each pair of regions of the complex, ascending; empty without a complex.
+  std::map<std::pair<RegionIndex, RegionIndex>, std::size_t> sheets_;
+  std::vector<std::size_t> sheet_of_patch_;
   ProjectionTree triangles_, creases_, corner_points_;
   std::vector<Vec3> normals_;  ///< of the items of triangles_
   std::vector<Corner> corners_;
   std::vector<SurfaceRegion> groups_;  ///< by patch
+  struct Collected {
+    std::vector<Vec3> points;
+    std::vector<ProjectionTree::Item> triangles, segments;
+  };
+  std::unique_ptr<Collected> collected_;  ///< while the trees are not built
 };
 
 }  // namespace tetwright

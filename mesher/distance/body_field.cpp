@@ -75,12 +75,19 @@ BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool ke
                                "' are thicker than the body itself, which has no " +
                                "point so deep inside; make them thinner");
         const std::uint16_t inner = add(std::move(inner_side));
-        regions.push_back({layer.name, layer.tag, {{outer, false, number}, {inner, true, number}}});
+        regions.push_back({layer.name,
+                           layer.tag,
+                           {{outer, false, number, outer != surface}, {inner, true, number, true}},
+                           static_cast<RegionIndex>(b + 1)});
         outer = inner;
       }
-    regions.push_back({body.name, body.tag, {{outer, false, number}}});
+    regions.push_back(
+        {body.name, body.tag, {{outer, false, number, outer != surface}}, static_cast<RegionIndex>(b + 1)});
   }
-  result.field = std::make_shared<const LevelSetField>(voxels, std::move(level_sets), std::move(regions));
+  std::shared_ptr<const ContactZone> zone;
+  if (input.complex) zone = std::make_shared<const ContactZone>(*input.complex, voxels);
+  result.field = std::make_shared<const LevelSetField>(voxels, std::move(level_sets), std::move(regions),
+                                                       std::move(zone));
   return result;
 }
 

@@ -67,6 +67,10 @@ class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
                             Vec3* slopes) override {
     read_gradients(point);
     for (RegionIndex r : regions) {
+      if (in_zone) {
+        *out++ = zone_value(r, slopes++);
+        continue;
+      }
       const RegionTerm* largest;
       *out++ = value(r, largest);
       *slopes++ = signed_gradient(*largest);
@@ -79,6 +83,7 @@ class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
     for (std::size_t j = 0; j < distances.size(); ++j) distances[j] = per_voxel * readers[j]->at(at);
     has_gradients = false;
     find_carving_maxima();
+    enter_zone(at);
   }
   void read_gradients(const Vec3& point) {
     place = point;
@@ -87,6 +92,7 @@ class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
       distances[j] = per_voxel * readers[j]->at(at, gradients[j]);
     has_gradients = true;
     find_carving_maxima();
+    enter_zone(at);
   }
   void read_voxel(int x, int y, int z) {
     place = per_voxel * Vec3(x, y, z);
@@ -94,6 +100,31 @@ class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
       distances[j] = per_voxel * readers[j]->at_node(x, y, z);
     has_gradients = false;
     find_carving_maxima();
+    enter_zone(Vec3(x, y, z));
+  }
+
+  /// Looks up the complex where it decides.
+  void enter_zone(const Vec3& at) {
+    in_zone = field.zone() && field.zone()->contains(at);
+    if (!in_zone) return;
+    place_in_voxels = at;
+    here = field.zone()->nearest(at);
+  }
+  /// The signed distance of a region in the zone: that of its body, and of the other surfaces by which layers
+  /// divide the body.
+  double zone_value(RegionIndex r, Vec3* gradient) {
+    const LevelSetRegion& region = field.level_set_regions()[r];
+    const bool inside = region.of_complex == here.region;
+    const auto distance = field.zone()->distance(place_in_voxels, region.of_complex);
+    double best = per_voxel * (distance ? distance->value : level_set_band) * (inside ? -1 : 1);
+    if (gradient) *gradient = distance ? Vec3(inside ? -distance->gradient : distance->gradient) : Vec3(Vec3::Zero());
+    for (std::size_t i = 0; i < field.own_terms(r); ++i) {
+      const RegionTerm& term = region.terms[i];
+      if (!term.offset || signed_term(term) <= best) continue;
+      best = signed_term(term);
+      if (gradient) *gradient = signed_gradient(term);
+    }
+    return best;
   }
 
   /// For each of the outside's terms, finds the largest of this and the following terms; ties go to the
@@ -109,6 +140,7 @@ class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
   /// The signed distance of a region and its largest term. The distance is increased where the region is a
   /// sliver between surfaces in contact. Costs O(own terms), except near the region's surface.
   double value(RegionIndex r) {
+    if (in_zone) return zone_value(r, nullptr);
     const RegionTerm* unused;
     return value(r, unused);
   }
@@ -172,6 +204,8 @@ class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
   }
 
   NearestRegion nearest() {
+    if (in_zone && field.layers() == 0)
+      return {field.region_of(here.region), static_cast<float>(std::min(per_voxel * here.distance, field.band()))};
     const std::size_t count = field.regions().size();
     RegionIndex best = 0;
     double smallest = value(0), next = HUGE_VAL;
@@ -192,6 +226,9 @@ class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
   double per_voxel;  ///< lattice units
   Vec3 place;        ///< last point read, lattice units
   bool has_gradients = false;
+  bool in_zone = false;  ///< the complex decides at the last point read, with the following two
+  Vec3 place_in_voxels;
+  ContactZone::Nearest here{};
   std::vector<std::unique_ptr<LevelSetSampler>> readers;
   std::vector<double> distances;
   std::vector<Vec3> gradients;
@@ -205,11 +242,15 @@ class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
 };
 
 LevelSetField::LevelSetField(const GridFrame& voxels, std::vector<std::shared_ptr<const LevelSet>> level_sets,
-                             std::vector<LevelSetRegion> regions, int refinement)
+                             std::vector<LevelSetRegion> regions, std::shared_ptr<const ContactZone> zone,
+                             int refinement)
     : MaterialField(voxels, names_of(regions), level_set_band, refinement),
       level_sets_(std::move(level_sets)),
-      level_set_regions_(std::move(regions)) {
+      level_set_regions_(std::move(regions)),
+      zone_(std::move(zone)) {
   const std::vector<RegionTerm>& carving = level_set_regions_[outside_region].terms;
+  for (std::size_t r = 1; r < level_set_regions_.size(); ++r)
+    layers_ += r > 1 && level_set_regions_[r].of_complex == level_set_regions_[r - 1].of_complex;
   for (const LevelSetRegion& region : level_set_regions_) {
     const auto shared =
         std::mismatch(region.terms.rbegin(), region.terms.rend(), carving.rbegin(), carving.rend());
@@ -222,7 +263,7 @@ LevelSetField::~LevelSetField() { drop_samplers(); }
 std::unique_ptr<FieldSampler> LevelSetField::sampler() const { return std::make_unique<Sampler>(*this); }
 
 std::shared_ptr<const MaterialField> LevelSetField::refined(int refinement) const {
-  return std::make_shared<LevelSetField>(voxels(), level_sets_, level_set_regions_, refinement);
+  return std::make_shared<LevelSetField>(voxels(), level_sets_, level_set_regions_, zone_, refinement);
 }
 
 const WallChanges* LevelSetField::wall_changes() const {
@@ -234,7 +275,7 @@ const WallChanges* LevelSetField::wall_changes() const {
 std::shared_ptr<const MaterialField> LevelSetField::with_true_walls() const {
   std::vector<std::shared_ptr<const LevelSet>> as_is;
   for (const auto& level_set : level_sets_) as_is.push_back(LevelSet::with_true_walls(level_set));
-  return std::make_shared<LevelSetField>(voxels(), std::move(as_is), level_set_regions_, refinement());
+  return std::make_shared<LevelSetField>(voxels(), std::move(as_is), level_set_regions_, zone_, refinement());
 }
 
 bool LevelSetField::contains(const Vec3& point) const {
@@ -316,6 +357,7 @@ std::optional<RegionSet> LevelSetField::Sampler::two_nearest(const Vec3& point) 
 
 std::optional<FieldSheet> LevelSetField::Sampler::thinnest_sheet(const Vec3& point, double reach) {
   read_gradients(point);
+  if (in_zone) return {};
   std::optional<FieldSheet> thinnest;
   for (std::size_t r = 1; r < field.regions().size(); ++r) {
     const auto& terms = field.terms(static_cast<RegionIndex>(r));

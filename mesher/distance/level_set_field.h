@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mesher/complex/contact_zone.h"
 #include "mesher/distance/level_set.h"
 #include "mesher/distance/material_field.h"
 
@@ -16,6 +17,7 @@ struct RegionTerm {
   bool negated;
   /// Level sets of one body are exact offsets of each other; those of different bodies may touch.
   std::uint16_t body = 0;
+  bool offset = false;  ///< an offset of the body's surface, by which layers are cut
   bool operator==(const RegionTerm&) const = default;
 };
 
@@ -23,6 +25,7 @@ struct LevelSetRegion {
   std::string name;
   MaterialTag tag = 0;
   std::vector<RegionTerm> terms;
+  RegionIndex of_complex = 0;  ///< its body's number in a LabelledComplex
 };
 
 /// The field of surfaces: level sets on voxels, and regions as combinations of them.
@@ -30,8 +33,10 @@ class LevelSetField final : public MaterialField, private WallChanges {
  public:
   /// \param voxels frame of the level sets
   /// \param regions the first is the outside
+  /// \param zone where bodies meet, or null: there regions are decided by the triangles
   LevelSetField(const GridFrame& voxels, std::vector<std::shared_ptr<const LevelSet>> level_sets,
-                std::vector<LevelSetRegion> regions, int refinement = 0);
+                std::vector<LevelSetRegion> regions, std::shared_ptr<const ContactZone> zone,
+                int refinement = 0);
   ~LevelSetField() override;
 
   std::unique_ptr<FieldSampler> sampler() const override;
@@ -41,10 +46,16 @@ class LevelSetField final : public MaterialField, private WallChanges {
   const WallChanges* wall_changes() const override;
 
   const std::vector<std::shared_ptr<const LevelSet>>& level_sets() const { return level_sets_; }
+  const std::vector<LevelSetRegion>& level_set_regions() const { return level_set_regions_; }
   const std::vector<RegionTerm>& terms(RegionIndex region) const { return level_set_regions_[region].terms; }
   /// The number of a region's terms before those it shares with the outside. Later bodies carve all earlier
   /// ones, so a region's last terms are the last ones of the outside.
   std::size_t own_terms(RegionIndex region) const { return own_terms_[region]; }
+  const ContactZone* zone() const { return zone_.get(); }
+  /// The number of layers cut from the first body.
+  std::size_t layers() const { return layers_; }
+  /// The region of a body that has no layers, by its number in the complex.
+  RegionIndex region_of(RegionIndex of_complex) const { return of_complex; }
 
  private:
   class Sampler;
@@ -56,6 +67,8 @@ class LevelSetField final : public MaterialField, private WallChanges {
   std::vector<std::shared_ptr<const LevelSet>> level_sets_;
   std::vector<LevelSetRegion> level_set_regions_;
   std::vector<std::size_t> own_terms_;  ///< by region
+  std::shared_ptr<const ContactZone> zone_;
+  std::size_t layers_ = 0;
 };
 
 }  // namespace tetwright

@@ -9,6 +9,7 @@
 
 #include "common/geometry/measurable.h"
 #include "common/message_text.h"
+#include "mesher/input/body_contacts.h"
 #include "mesher/input/qualified_names.h"
 #include "mesher/tuning/input_tuning.h"
 #include "tetwright/error.h"
@@ -137,7 +138,7 @@ double largest_coordinate(const MesherInput& input) {
 }
 
 MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers,
-                              NestedRule nested) {
+                              NestedRule nested, const ContactOptions& contact, Progress* progress) {
   if (surfaces.empty()) throw UsageError("there is no surface to mesh");
   MesherInput input;
   name_groups(surfaces, input.findings);
@@ -148,6 +149,7 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
   find_bounding_box(input);
   validate_materials(input);
   require_measurable(longest_side(input), largest_coordinate(input), "surface", input.bodies[0].file);
+  join_bodies(input, contact, progress);
   return input;
 }
 

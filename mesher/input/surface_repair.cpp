@@ -9,6 +9,7 @@
 #include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
 #include "mesher/input/surface_components.h"
+#include "mesher/input/surface_measures.h"
 #include "mesher/input/surface_nesting.h"
 #include "mesher/tuning/input_tuning.h"
 #include "tetwright/error.h"
@@ -173,6 +174,13 @@ RepairedSurface assemble(const Cleaned& from, const std::vector<SurfaceComponent
     if (closed) s.closed = s.triangles.size();
   }
   s.points = keep_used(from.points, s.triangles);
+  measure_surface(s);
+  return s;
+}
+
+}  // namespace
+
+void measure_surface(RepairedSurface& s) {
   s.low = s.high = s.points[0];
   for (const Vec3& p : s.points) s.low = s.low.cwiseMin(p), s.high = s.high.cwiseMax(p);
   const Vec3 apex = 0.5 * s.low + 0.5 * s.high;
@@ -191,10 +199,7 @@ RepairedSurface assemble(const Cleaned& from, const std::vector<SurfaceComponent
   s.volume = sum([&](const Vec3& a, const Vec3& b, const Vec3& c) {
     return (a - apex).dot((b - apex).cross(c - apex)) / 6;
   });
-  return s;
 }
-
-}  // namespace
 
 SurfaceRepair repair_surface(const TriangleMesh& surface, const std::string& file, NestedRule nested) {
   SurfaceRepair result;

@@ -90,6 +90,11 @@ struct CutTuning {
     static constexpr double surface_reach = 2;
     /// Max distance of a corner from the point that represents it, cells.
     static constexpr double corner_reach = 1.5;
+    /// Max distance of a corner where sheets meet from the vertex that represents it, cells: where surfaces
+    /// meet at a small angle, the mesh's junction is that far away.
+    static constexpr double junction_reach = 3;
+    /// Creases this close to each other, cells, are parts of one curve: rounding of nearest points.
+    static constexpr double same_curve = 1e-6;
     /// Max distance of a crease from an edge that crosses it, in edge lengths: the tip of a wedge of 30
     /// degrees is two edges from its chamfer.
     static constexpr double crease_reach = 2.5;

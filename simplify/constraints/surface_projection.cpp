@@ -79,7 +79,7 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
     const auto p = static_cast<Index>(edges[i].key >> 32), q = static_cast<Index>(edges[i].key);
     // A given surface with patches provides its own feature edges.
     if ((j - i != 2 || (!given_patches_ && edges[i].patch != edges[i + 1].patch)) && complete(p) &&
-        complete(q)) {
+        complete(q) && !given_has_curve(mesh, p, q)) {
       const Index a = points.number(p), b = points.number(q);
       segments.push_back({{a, b, b}, {}});
     }
@@ -94,6 +94,13 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
     if (degrees[p] != 2) corners.push_back({{p, p, p}, {}});
   corners_ = ProjectionTree(points.points, std::move(corners));
   curves_ = ProjectionTree(std::move(points.points), std::move(segments));
+}
+
+bool SurfaceProjection::given_has_curve(const EditableMesh& mesh, Index p, Index q) const {
+  if (!given_patches_ || !given_->has_junctions()) return false;
+  const Vec3 &a = mesh.position(p), &b = mesh.position(q);
+  const double reach = SimplifyTuning::Projection::same_curve_share * (b - a).norm() / mesh.space().scale();
+  return given_->onto_crease(mesh.space().to_input((a + b) / 2), reach).has_value();
 }
 
 std::optional<Vec3> SurfaceProjection::onto_surface(const Vec3& p, RegionId first, RegionId second,

@@ -43,6 +43,8 @@ class SurfaceProjection {
   std::optional<Vec3> onto_corner(const Vec3& p, double max_distance) const;
 
  private:
+  /// Whether the given surface itself has the junction curve that a junction edge of the mesh follows.
+  bool given_has_curve(const EditableMesh& mesh, Index p, Index q) const;
   /// The nearer of `own` and the given surface's answer, if that has patches.
   std::optional<Vec3> nearer(const Vec3& p, const std::optional<Vec3>& own, double max_distance,
                              std::optional<Vec3> (ReferenceSurface::*onto)(const Vec3&, double) const) const;

@@ -171,6 +171,13 @@ struct SimplifyTuning {
     static constexpr double projection_reach = 0.5;
   };
 
+  /// Junction curves of the mesh and of a reference surface.
+  struct Projection {
+    /// A junction edge of the mesh follows a curve of the reference surface if that is this close to its
+    /// middle, edges: half an edge, since other curves are at least a cell away.
+    static constexpr double same_curve_share = 0.5;
+  };
+
   /// Moves of a point that fit its triangles to their samples.
   struct Fitting {
     static constexpr double reach = 1;  ///< max step, in shortest edges

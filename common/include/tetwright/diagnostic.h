@@ -71,6 +71,8 @@ enum class DiagnosticCode : std::uint8_t {
   cavities_filled,
   components_separated,
   names_qualified,
+  bodies_overlap,
+  bodies_not_joined,
   // Segmented volumes.
   no_outside,
   islands_merged,

@@ -56,6 +56,8 @@ class ReferenceSurface {
   /// they meet. If so, the queries below are exact. Otherwise they return std::nullopt, and borders of
   /// patches in the mesh are preserved like its junction curves.
   virtual bool has_patches() const { return false; }
+  /// Whether onto_crease() and onto_corner() also know the curves in which three or more interfaces meet.
+  virtual bool has_junctions() const { return false; }
   /// Nearest point of a patch of the interface between two regions within `max_distance` (input units).
   virtual std::optional<Vec3> onto_patch(const Vec3& /*point*/, MaterialOrOutside /*first*/,
                                          MaterialOrOutside /*second*/, std::uint16_t /*patch*/,

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -132,6 +133,38 @@ struct MaterialLayer {
   double thickness = 0;  ///< input units
 };
 
+/// Which body a point belongs to that several contain.
+enum class OverlapRule : std::uint8_t {
+  later,  ///< the last one: later bodies carve earlier ones
+  first,  ///< the first one
+  error   ///< none: bodies that cross are refused
+};
+
+/// How bodies that meet are joined.
+struct ContactOptions {
+  /// Gaps and overlaps of different bodies up to this are contact, input units; by default 1e-5 of the
+  /// diagonal of the bounding box.
+  std::optional<double> tolerance;
+  OverlapRule overlap = OverlapRule::later;
+};
+
+/// Faces that two bodies share.
+struct ContactReport {
+  std::string first, second;       ///< materials, in the order of the bodies
+  double area = 0;                 ///< input units squared
+  std::size_t pieces = 0;          ///< connected by edges
+  double largest_distance = 0;     ///< gap or overlap that was closed, input units
+};
+
+/// Two bodies that cross: neither contains the other.
+struct OverlapReport {
+  std::string first, second;  ///< materials, in the order of the bodies
+  double volume = 0;          ///< that both claimed, input units cubed
+  Vec3 place = Vec3::Zero();  ///< on the boundary of its largest part, input units
+};
+
+class LabelledComplex;
+
 /// Repaired surfaces, ready to be meshed.
 struct MesherInput {
   struct Body {
@@ -152,6 +185,11 @@ struct MesherInput {
   std::vector<Diagnostic> findings;
   std::vector<Group> groups;  ///< groups with triangles, ascending; repair may remove all of one
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< bounding box of all bodies, input units
+  /// All surfaces as one complex, if some of them meet.
+  std::shared_ptr<const LabelledComplex> complex = {};
+  OverlapRule overlap = OverlapRule::later;
+  std::vector<ContactReport> contacts = {};  ///< by pair of bodies
+  std::vector<OverlapReport> overlaps = {};
 };
 
 /// The reason why surfaces do not define the solid of a material with certainty: a flaw of its own surface or
@@ -169,13 +207,19 @@ enum class SurfaceFlaw : std::uint8_t {
 /// one surface has groups of triangles, names that occur in several surfaces are qualified (see
 /// qualify_names()), and groups that have only a number are named after their surface.
 ///
+/// Closed bodies that meet are then joined (ContactOptions): their surfaces are cut along the curves in which
+/// they meet, and within the tolerance moved onto each other.
+///
+/// \param progress may be null
 /// \pre non-empty names differ, and so do tags
-/// \throws InputError as repair_surface() does; for coordinates too large or a size too small for areas and
+/// \throws InputError as repair_surface() does; for surfaces that cannot be joined, bodies that cross with
+///   OverlapRule::error; for coordinates too large or a size too small for areas and
 ///   volumes in double precision
 /// \throws UsageError for no surface, two materials of one name or tag, a layer whose thickness is not above
 ///   0, or more than 60,000 materials
 MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers = {},
-                              NestedRule nested = NestedRule::automatic);
+                              NestedRule nested = NestedRule::automatic, const ContactOptions& contact = {},
+                              Progress* progress = nullptr);
 
 /// The longest side of the bounding box, input units.
 double longest_side(const MesherInput& input);

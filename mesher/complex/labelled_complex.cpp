@@ -1,0 +1,310 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesher/complex/labelled_complex.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+
+#include "common/features/edge_uses.h"
+#include "common/geometry/box_tree.h"
+#include "common/geometry/ray_crossing.h"
+#include "common/mesh/disjoint_sets.h"
+#include "mesher/complex/surface_cells.h"
+#include "mesher/tuning/complex_tuning.h"
+
+namespace tetwright {
+
+namespace {
+
+/// A triangle of the complex with how often each body's surface runs along it.
+struct Welded {
+  Triangle ids;
+  std::size_t first, count;  ///< uses
+};
+
+/// A triangle of a body on a triangle of the complex.
+struct Use {
+  std::uint32_t body;
+  Index source;
+  bool turned;
+};
+
+}  // namespace
+
+class ComplexBuilder {
+ public:
+  ComplexBuilder(const ImprintedSurfaces& imprinted, const SurfaceSoup& soup, std::size_t bodies,
+                 OverlapRule rule, double tolerance)
+      : imprinted_(imprinted), soup_(soup), bodies_(bodies), rule_(rule), tolerance_(tolerance) {}
+
+  ComplexResult build() {
+    weld();
+    find_windings();
+    label_cells();
+    find_overlaps();
+    dissolve_thin_cells();
+    assemble();
+    return std::move(result_);
+  }
+
+ private:
+  const Vec3& at(Index p) const { return imprinted_.points[p]; }
+  std::span<const Use> uses(Index t) const { return std::span(uses_).subspan(welded_[t].first, welded_[t].count); }
+  Vec3 area_vector(const Triangle& t) const { return (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])) / 2; }
+
+  /// Makes triangles with the same points one. A body's triangles that run both ways cancel.
+  void weld() {
+    struct Entry {
+      Triangle sorted;
+      Index triangle;
+      bool turned;
+    };
+    std::vector<Entry> entries;
+    for (Index t = 0; t < imprinted_.triangles.size(); ++t) {
+      Triangle ids = imprinted_.triangles[t];
+      std::rotate(ids.begin(), std::min_element(ids.begin(), ids.end()), ids.end());
+      const bool turned = ids[1] > ids[2];
+      if (turned) std::swap(ids[1], ids[2]);
+      entries.push_back({ids, t, turned});
+    }
+    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+      return a.sorted != b.sorted ? a.sorted < b.sorted : a.triangle < b.triangle;
+    });
+    for (std::size_t i = 0, j = 0; i < entries.size(); i = j) {
+      std::map<std::uint32_t, std::vector<Use>> of_body;
+      for (; j < entries.size() && entries[j].sorted == entries[i].sorted; ++j) {
+        const Index source = imprinted_.source[entries[j].triangle];
+        const std::uint32_t body = soup_.surface[source];
+        std::vector<Use>& own = of_body[body];
+        const auto opposite = std::find_if(own.begin(), own.end(),
+                                           [&](const Use& u) { return u.turned != entries[j].turned; });
+        if (opposite != own.end())
+          own.erase(opposite);
+        else
+          own.push_back({body, source, entries[j].turned});
+      }
+      const std::size_t first = uses_.size();
+      for (const auto& [body, own] : of_body) uses_.insert(uses_.end(), own.begin(), own.end());
+      if (uses_.size() > first) welded_.push_back({entries[i].sorted, first, uses_.size() - first});
+    }
+    std::vector<Triangle> triangles;
+    for (const Welded& w : welded_) triangles.push_back(w.ids);
+    cells_ = find_cells(imprinted_.points, triangles);
+  }
+
+  /// Winding numbers of all bodies in each cell, at the triangle of the cell with the largest projection.
+  void find_windings() {
+    std::vector<Index> shown(cells_.count, no_index);
+    std::vector<double> largest(cells_.count, -1);
+    for (Index t = 0; t < welded_.size(); ++t) {
+      const double size = std::abs(area_vector(welded_[t].ids).z());
+      for (const Index cell : cells_.sides[t])
+        if (size > largest[cell]) largest[cell] = size, shown[cell] = t;
+    }
+    std::vector<Box3> boxes(welded_.size());
+    std::vector<Vec3> middles(welded_.size());
+    for (Index t = 0; t < welded_.size(); ++t) {
+      for (const Index p : welded_[t].ids) boxes[t].add(at(p));
+      middles[t] = boxes[t].low + boxes[t].high;
+    }
+    const std::vector<Index> order = median_order(boxes, middles, ComplexTuning::Imprint::leaf_size);
+    const BoxTree tree(order.size(), ComplexTuning::Imprint::leaf_size,
+                       [&](std::size_t i) { return boxes[order[i]]; });
+    windings_.assign(cells_.count, std::vector<int>(bodies_, 0));
+    parallel_for(0, cells_.count, ComplexGrains::divided, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t cell = begin; cell < end; ++cell) {
+        const Index own = shown[cell];
+        const Triangle& ids = welded_[own].ids;
+        const Vec3 p = (at(ids[0]) + at(ids[1]) + at(ids[2])) / 3;
+        std::vector<int>& winding = windings_[cell];
+        const auto cross = [&](Index t, int crossing) {
+          for (const Use& u : uses(t)) winding[u.body] += u.turned ? -crossing : crossing;
+        };
+        tree.for_each_in(
+            [&](const Box3& box) {
+              return box.low.x() <= p.x() && p.x() <= box.high.x() && box.low.y() <= p.y() &&
+                     p.y() <= box.high.y() && box.low.z() <= p.z();
+            },
+            [&](std::size_t i) {
+              const Index t = order[i];
+              if (t == own) return;
+              const auto& [a, b, c] = welded_[t].ids;
+              if (const int crossing = vertical_crossing(at(a), at(b), at(c), p))
+                if (at_or_above(at(a), at(b), at(c), crossing, p)) cross(t, crossing);
+            });
+        // The side of its own triangle that is above it has crossed it.
+        const bool points_up = area_vector(ids).z() > 0;
+        const bool is_front = cells_.sides[own][1] == cell && cells_.sides[own][0] != cell;
+        if (cells_.sides[own][0] != cells_.sides[own][1] && is_front == points_up)
+          cross(own, points_up ? -1 : 1);
+      }
+    });
+    for (Index t = 0; t < welded_.size() && !result_.inconsistent; ++t) {
+      std::vector<int> step(bodies_, 0);
+      for (const Use& u : uses(t)) step[u.body] += u.turned ? -1 : 1;
+      const auto [behind, front] = cells_.sides[t];
+      for (std::size_t b = 0; b < bodies_; ++b)
+        if (windings_[behind][b] - windings_[front][b] != step[b]) result_.inconsistent = at(welded_[t].ids[0]);
+    }
+  }
+
+  void label_cells() {
+    labels_.assign(cells_.count, outside_region);
+    for (Index c = 0; c < cells_.count; ++c)
+      for (std::size_t b = 0; b < bodies_; ++b)
+        if (windings_[c][b] > 0 && (rule_ != OverlapRule::first || labels_[c] == outside_region))
+          labels_[c] = static_cast<RegionIndex>(b + 1);
+    volumes_.assign(cells_.count, 0);
+    areas_.assign(cells_.count, 0);
+    places_.assign(cells_.count, Vec3::Zero());
+    const Vec3 apex = welded_.empty() ? Vec3(Vec3::Zero()) : at(welded_[0].ids[0]);
+    std::vector<double> largest(cells_.count, -1);
+    for (Index t = 0; t < welded_.size(); ++t) {
+      const auto& [a, b, c] = welded_[t].ids;
+      const double volume = (at(a) - apex).dot((at(b) - apex).cross(at(c) - apex)) / 6,
+                   area = area_vector(welded_[t].ids).norm();
+      volumes_[cells_.sides[t][0]] += volume;
+      volumes_[cells_.sides[t][1]] -= volume;
+      for (const Index cell : cells_.sides[t]) {
+        areas_[cell] += area;
+        if (area > largest[cell]) largest[cell] = area, places_[cell] = (at(a) + at(b) + at(c)) / 3;
+      }
+    }
+  }
+
+  void find_overlaps() {
+    struct Volumes {
+      double both = 0, first_only = 0, second_only = 0, largest = -1, area = 0;
+      Vec3 place = Vec3::Zero();
+    };
+    std::map<std::pair<std::size_t, std::size_t>, Volumes> pairs;
+    for (Index c = 0; c < cells_.count; ++c)
+      for (std::size_t a = 0; a < bodies_; ++a)
+        for (std::size_t b = a + 1; b < bodies_ && volumes_[c] > 0 && windings_[c][a] > 0; ++b) {
+          if (windings_[c][b] <= 0) continue;
+          Volumes& v = pairs[{a, b}];
+          v.both += volumes_[c];
+          v.area += areas_[c];
+          if (volumes_[c] > v.largest) v.largest = volumes_[c], v.place = places_[c];
+        }
+    for (auto& [pair, v] : pairs) {
+      const auto [a, b] = pair;
+      for (Index c = 0; c < cells_.count; ++c) {
+        if (!(volumes_[c] > 0)) continue;
+        if (windings_[c][a] > 0 && windings_[c][b] <= 0) v.first_only += volumes_[c];
+        if (windings_[c][b] > 0 && windings_[c][a] <= 0) v.second_only += volumes_[c];
+      }
+      const double smallest = tolerance_ * v.area;
+      if (v.both > smallest && v.first_only > smallest && v.second_only > smallest)
+        result_.overlaps.push_back({a, b, v.both, v.place});
+    }
+  }
+
+  /// Gives cells that are thinner than the tolerance to the neighbour with the largest common area.
+  void dissolve_thin_cells() {
+    std::map<Index, std::map<RegionIndex, double>> beside;
+    const auto is_thin = [&](Index c) { return std::abs(volumes_[c]) < tolerance_ * areas_[c] / 4; };
+    for (Index t = 0; t < welded_.size(); ++t) {
+      const auto [behind, front] = cells_.sides[t];
+      const double area = area_vector(welded_[t].ids).norm();
+      if (is_thin(behind)) beside[behind][labels_[front]] += area;
+      if (is_thin(front)) beside[front][labels_[behind]] += area;
+    }
+    for (const auto& [cell, neighbours] : beside) {
+      const RegionIndex to = std::max_element(neighbours.begin(), neighbours.end(), [](const auto& a, const auto& b) {
+                               return a.second < b.second;
+                             })->first;
+      if (to == labels_[cell]) continue;
+      labels_[cell] = to;
+      ++result_.dissolved;
+    }
+  }
+
+  void assemble() {
+    LabelledComplex& out = result_.complex;
+    result_.body_triangles.resize(bodies_);
+    result_.body_sources.resize(bodies_);
+    result_.lost.assign(bodies_, 1);
+    out.points = imprinted_.points;
+    out.starts_.push_back(0);
+    for (Index t = 0; t < welded_.size(); ++t) {
+      const std::size_t first = out.sources_.size();
+      for (const Use& u : uses(t)) {
+        Triangle ids = welded_[t].ids;
+        if (u.turned) std::swap(ids[1], ids[2]);
+        out.sources_.push_back(
+            {u.body, static_cast<Index>(result_.body_triangles[u.body].size()), u.turned});
+        result_.body_triangles[u.body].push_back(ids);
+        result_.body_sources[u.body].push_back(u.source);
+      }
+      const RegionIndex behind = labels_[cells_.sides[t][0]], front = labels_[cells_.sides[t][1]];
+      if (behind == front) {
+        out.sources_.resize(first);
+        continue;
+      }
+      out.faces.push_back({welded_[t].ids, behind, front});
+      out.starts_.push_back(out.sources_.size());
+      for (const RegionIndex r : {behind, front})
+        if (r != outside_region) result_.lost[r - 1u] = 0;
+      out.has_contacts_ |= out.is_contact(static_cast<Index>(out.faces.size() - 1));
+    }
+    find_contacts();
+    std::vector<Triangle> triangles;
+    for (const LabelledComplex::Face& f : out.faces) triangles.push_back(f.ids);
+    const std::vector<EdgeUse> edges = edge_uses(triangles, {});
+    const auto pair_of = [&](Index f) { return std::minmax(out.faces[f].behind, out.faces[f].front); };
+    for (std::size_t i = 0, j = 0; i < edges.size(); i = j) {
+      bool plain = true;
+      for (; j < edges.size() && edges[j].key == edges[i].key; ++j)
+        plain &= pair_of(edges[j].triangle) == pair_of(edges[i].triangle);
+      if (j - i != 2 || !plain) out.junctions_.push_back(ends_of(edges[i].key));
+    }
+  }
+
+  void find_contacts() {
+    const LabelledComplex& complex = result_.complex;
+    std::map<std::pair<std::size_t, std::size_t>, std::vector<Index>> faces;
+    for (Index f = 0; f < complex.faces.size(); ++f)
+      if (complex.is_contact(f)) {
+        const auto [low, high] = std::minmax(complex.faces[f].behind, complex.faces[f].front);
+        faces[{low - 1u, high - 1u}].push_back(f);
+      }
+    for (const auto& [pair, list] : faces) {
+      BodyContact contact{pair.first, pair.second};
+      std::vector<Triangle> triangles;
+      for (const Index f : list) {
+        triangles.push_back(complex.faces[f].ids);
+        contact.area += area_vector(triangles.back()).norm();
+        for (const Index p : triangles.back()) contact.largest_gap = std::max(contact.largest_gap, imprinted_.gap[p]);
+      }
+      DisjointSets sets(list.size());
+      const std::vector<EdgeUse> edges = edge_uses(triangles, {});
+      for (std::size_t i = 1; i < edges.size(); ++i)
+        if (edges[i].key == edges[i - 1].key) sets.unite(edges[i].triangle, edges[i - 1].triangle);
+      for (Index i = 0; i < list.size(); ++i) contact.pieces += sets.is_root(i);
+      result_.contacts.push_back(contact);
+    }
+  }
+
+  const ImprintedSurfaces& imprinted_;
+  const SurfaceSoup& soup_;
+  std::size_t bodies_;
+  OverlapRule rule_;
+  double tolerance_;
+  ComplexResult result_;
+  std::vector<Welded> welded_;
+  std::vector<Use> uses_;
+  SurfaceCells cells_;
+  std::vector<std::vector<int>> windings_;  ///< by cell and body
+  std::vector<RegionIndex> labels_;         ///< by cell, as are the following
+  std::vector<double> volumes_, areas_;
+  std::vector<Vec3> places_;  ///< on its largest triangle
+};
+
+ComplexResult build_complex(const ImprintedSurfaces& imprinted, const SurfaceSoup& soup, std::size_t bodies,
+                            OverlapRule rule, double tolerance) {
+  return ComplexBuilder(imprinted, soup, bodies, rule, tolerance).build();
+}
+
+}  // namespace tetwright

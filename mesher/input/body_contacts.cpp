@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesher/input/body_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/geometry/box_tree.h"
+#include "common/message_text.h"
+#include "mesher/complex/labelled_complex.h"
+#include "mesher/input/surface_measures.h"
+#include "mesher/tuning/complex_tuning.h"
+#include "tetwright/error.h"
+
+namespace tetwright {
+
+namespace {
+
+bool is_closed(const RepairedSurface& s) { return s.closed == s.triangles.size(); }
+
+/// All bodies' surfaces; points of different bodies stay apart.
+SurfaceSoup soup_of(const MesherInput& input) {
+  SurfaceSoup soup;
+  for (std::size_t b = 0; b < input.bodies.size(); ++b) {
+    const RepairedSurface& s = input.bodies[b].surface;
+    const auto first = static_cast<Index>(soup.points.size());
+    soup.points.insert(soup.points.end(), s.points.begin(), s.points.end());
+    for (const Triangle& t : s.triangles) {
+      soup.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+      soup.surface.push_back(static_cast<std::uint32_t>(b));
+    }
+  }
+  return soup;
+}
+
+bool boxes_meet(const MesherInput& input, double tolerance) {
+  for (std::size_t a = 0; a < input.bodies.size(); ++a)
+    for (std::size_t b = 0; b < a; ++b) {
+      const RepairedSurface &s = input.bodies[a].surface, &t = input.bodies[b].surface;
+      if ((s.low.array() <= t.high.array() + tolerance).all() && (t.low.array() <= s.high.array() + tolerance).all())
+        return true;
+    }
+  return false;
+}
+
+/// Replaces a body's surface by its part of the complex.
+void take_surface(MesherInput::Body& body, const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+                  const std::vector<Index>& sources, Index first_source) {
+  RepairedSurface s;
+  s.intersects_itself = body.surface.intersects_itself;
+  std::vector<Index> number(points.size(), no_index);
+  for (Triangle t : triangles) {
+    for (Index& p : t) {
+      if (number[p] == no_index) {
+        number[p] = static_cast<Index>(s.points.size());
+        s.points.push_back(points[p]);
+      }
+      p = number[p];
+    }
+    s.triangles.push_back(t);
+  }
+  if (!body.surface.groups.empty())
+    for (const Index source : sources) s.groups.push_back(body.surface.groups[source - first_source]);
+  s.closed = s.triangles.size();
+  measure_surface(s);
+  body.surface = std::move(s);
+}
+
+}  // namespace
+
+void join_bodies(MesherInput& input, const ContactOptions& options, Progress* progress) {
+  if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance)))
+    throw UsageError("the contact tolerance must be above 0, not " + short_number(*options.tolerance));
+  const double diagonal = (input.high - input.low).norm();
+  const double tolerance = options.tolerance.value_or(ComplexTuning::Contact::tolerance * diagonal);
+  if (input.bodies.size() < 2 || !boxes_meet(input, tolerance)) return;
+  const auto not_joined = [&](const std::string& file, const std::string& why, const Vec3& place) {
+    input.findings.push_back({.code = DiagnosticCode::bodies_not_joined,
+                              .file = file,
+                              .what = "surfaces that meet are not joined",
+                              .done = why,
+                              .places = {place}});
+  };
+  for (const MesherInput::Body& body : input.bodies)
+    if ((body.surface.high - body.surface.low).norm() < ComplexTuning::Contact::min_body * tolerance)
+      throw InputError(body.file, 0,
+                       "the contact tolerance of " + short_number(tolerance) + " is too large for '" + body.name +
+                           "', which is only " + short_number((body.surface.high - body.surface.low).norm()) +
+                           " across; use a smaller --contact-tolerance");
+  const SurfaceSoup soup = soup_of(input);
+  const ImprintedSurfaces imprinted = imprint_surfaces(soup, tolerance, progress);
+  if (!imprinted.any) return;
+  for (const MesherInput::Body& body : input.bodies)
+    if (!is_closed(body.surface)) {
+      not_joined(body.file, "its surface is open; contacts are accurate to a cell", body.surface.points[0]);
+      return;
+    }
+  if (imprinted.unresolved)
+    throw InputError(input.bodies.back().file, 0,
+                     "surfaces that meet at " + place_text(*imprinted.unresolved) +
+                         " cannot be joined within the contact tolerance of " + short_number(tolerance) +
+                         ", which is about the size of their facets there; use a smaller --contact-tolerance");
+  ComplexResult found = build_complex(imprinted, soup, input.bodies.size(), options.overlap, tolerance);
+  if (found.inconsistent) {
+    not_joined(input.bodies.back().file, "a surface crosses itself there; contacts are accurate to a cell",
+               *found.inconsistent);
+    return;
+  }
+  for (std::size_t b = 0; b < input.bodies.size(); ++b)
+    if (found.lost[b])
+      throw InputError(input.bodies[b].file, 0,
+                       "nothing is left of the material '" + input.bodies[b].name +
+                           "': other bodies cover all of it; leave it out, or list it after them");
+  for (const BodyOverlap& o : found.overlaps) {
+    const std::string &a = input.bodies[o.first].name, &b = input.bodies[o.second].name;
+    if (options.overlap == OverlapRule::error)
+      throw InputError(input.bodies[o.second].file, 0,
+                       "the bodies '" + a + "' and '" + b + "' cross at " + place_text(o.place) +
+                           ": both claim a volume of " + short_number(o.volume) +
+                           "; separate them, or use --on-overlap later or first");
+    input.overlaps.push_back({a, b, o.volume, o.place});
+    input.findings.push_back(
+        {.code = DiagnosticCode::bodies_overlap,
+         .file = input.bodies[o.second].file,
+         .what = "bodies that cross: '" + a + "' and '" + b + "' both claim a volume of " + short_number(o.volume),
+         .done = std::string("it belongs to '") + (options.overlap == OverlapRule::first ? a : b) + "'",
+         .places = {o.place}});
+  }
+  for (const BodyContact& c : found.contacts)
+    input.contacts.push_back({input.bodies[c.first].name, input.bodies[c.second].name, c.area, c.pieces,
+                              c.largest_gap});
+  if (!found.complex.any()) return;
+  Index first_source = 0;
+  for (std::size_t b = 0; b < input.bodies.size(); ++b) {
+    const auto count = static_cast<Index>(input.bodies[b].surface.triangles.size());
+    take_surface(input.bodies[b], imprinted.points, found.body_triangles[b], found.body_sources[b], first_source);
+    first_source += count;
+  }
+  input.overlap = options.overlap;
+  input.complex = std::make_shared<const LabelledComplex>(std::move(found.complex));
+}
+
+}  // namespace tetwright

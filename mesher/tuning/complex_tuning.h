@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+
+namespace tetwright {
+
+/// Items that a parallel loop hands out at a time: enough to outweigh the handing out, few enough to keep
+/// all threads busy to the end.
+struct ComplexGrains {
+  static constexpr std::size_t nodes = 512;    ///< of a tree of triangles
+  static constexpr std::size_t pairs = 2048;   ///< of triangles, compared with each other
+  static constexpr std::size_t divided = 64;   ///< triangles divided into parts
+  static constexpr std::size_t queries = 256;  ///< searches for the nearest triangle
+};
+
+/// Surfaces that meet; mesher/README.md, Tuned numbers, explains the terms.
+struct ComplexTuning {
+  struct Contact {
+    /// Default tolerance, diagonals of the bounding box: above the rounding of coordinates written with six
+    /// digits, below what a designer means as a gap.
+    static constexpr double tolerance = 1e-5;
+    /// Bodies must be larger than this, in tolerances, or little would be left of them.
+    static constexpr double min_body = 10;
+  };
+
+  struct Imprint {
+    static constexpr std::size_t leaf_size = 4;
+    /// Boxes of triangles grow by this, in tolerances: points move by up to one in each round.
+    static constexpr double box_margin = 2;
+    /// Rounds until two surfaces have only points and edges in common: two to four in general, more where a
+    /// tolerance is near the size of facets, and never ending where it is above it.
+    static constexpr int max_rounds = 16;
+    /// Limits of new points: in any case, and for each pair of triangles whose boxes meet at first. Crossing
+    /// surfaces need about two for each pair that crosses.
+    static constexpr double max_new_points = 100'000, points_per_pair = 8;
+    /// Squared sine of the angle between segments below which they count as parallel: rounding alone gives
+    /// 1e-16.
+    static constexpr double parallel = 1e-12;
+    /// A triangle whose height is below this, in tolerances, is flat.
+    static constexpr double flat_share = 0.25;
+    /// Common points of two triangles lie on the line in which their planes cross within this, in tolerances.
+    static constexpr double line_reach = 3;
+  };
+
+  /// Where regions are decided by the triangles.
+  struct Zone {
+    static constexpr std::size_t leaf_size = 4;
+    /// Distance from contacts and junctions, voxels: the band of the level sets, within which distances are
+    /// interpolated.
+    static constexpr double reach = 3;
+    /// Squared distances that differ by less than this share are equal: rounding of the nearest points of two
+    /// triangles with a common edge.
+    static constexpr double tie = 1e-9;
+  };
+};
+
+}  // namespace tetwright
