@@ -9,6 +9,8 @@
 #include <utility>
 
 #include "common/message_text.h"
+#include "mesher/complex/labelled_complex.h"
+#include "mesher/cut/complex_patches.h"
 #include "mesher/cut/crease_fitting.h"
 #include "mesher/cut/thin_wall_recovery.h"
 #include "mesher/distance/body_field.h"
@@ -241,13 +243,30 @@ void report_features(const MesherInput& input, const std::vector<SurfacePatches>
     const RepairedSurface& surface = input.bodies[b].surface;
     const bool exact = patches[b].verdict != SurfacePatches::Verdict::meeting &&
                        patches[b].verdict != SurfacePatches::Verdict::intersecting;
-    if (patches[b].any() && exact)
+    if (patches[b].any() && exact && !input.complex)
       report.creases.add(find_creases(surface.points, surface.triangles, patches[b].patches,
                                       CellTuning::Patches::corner_reach * report.cell_size),
                          surface.points);
     report.features.push_back({input.bodies[b].name, patches[b]});
     report.features.back().found.patches = {};
   }
+}
+
+/// Reports the creases of a complex: for each sheet, those between its patches.
+void report_complex_creases(const MesherInput& input, const std::vector<SurfacePatches>& patches,
+                            MesherReport& report) {
+  const ComplexPatches found = complex_patches(input, patches);
+  std::vector<std::vector<Triangle>> triangles(found.sheets.size());
+  std::vector<std::vector<std::uint16_t>> of_triangles(found.sheets.size());
+  for (std::size_t t = 0; t < found.triangles.size(); ++t) {
+    const std::size_t sheet = found.sheet_of_patch[found.patches[t]];
+    triangles[sheet].push_back(found.triangles[t]);
+    of_triangles[sheet].push_back(found.patches[t]);
+  }
+  for (std::size_t s = 0; s < triangles.size(); ++s)
+    report.creases.add(find_creases(input.complex->points, triangles[s], of_triangles[s],
+                                    CellTuning::Patches::corner_reach * report.cell_size),
+                       input.complex->points);
 }
 
 /// Drops creases that later bodies carve away, and creases near curves where three regions meet, which are
@@ -397,6 +416,7 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   if (!input.complex) give_up_where_surfaces_meet(input, dense.mesh, patches);
   give_up_where_gaps_are_closed(input, dense.report, patches);
   report_features(input, patches, dense.report);
+  if (input.complex) report_complex_creases(input, patches, dense.report);
   if (input.complex || std::any_of(patches.begin(), patches.end(), has_patches) ||
       std::any_of(input.bodies.begin(), input.bodies.end(), has_groups)) {
     stages.begin("creases");

@@ -144,8 +144,9 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
      .title = "bodies not joined",
      .message = "surfaces that meet are not joined (NAME is open; contacts are accurate to a cell)",
      .cause = "Bodies touch or cross, but the surface of one is open or crosses itself.",
-     .remedy = "Close or repair that surface. Until then edges at the contact are not kept, and small gaps may "
-               "open there."},
+     .remedy =
+         "Close or repair that surface. Until then edges at the contact are not kept, and small gaps may "
+         "open there."},
     {.code = no_outside,
      .name = "no-outside",
      .severity = Severity::note,

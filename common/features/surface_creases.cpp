@@ -77,8 +77,8 @@ class CreasePoints {
 
  private:
   struct AtPoint {
-    std::size_t count = 0;                               ///< edges of creases
-    std::vector<std::array<std::uint16_t, 2>> patches;   ///< of the first one, by pairs
+    std::size_t count = 0;                              ///< edges of creases
+    std::vector<std::array<std::uint16_t, 2>> patches;  ///< of the first one, by pairs
     std::array<Index, 2> others{};
     bool mixed = false;
     bool is_plain() const { return count == 2 && !mixed; }

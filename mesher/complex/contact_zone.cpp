@@ -9,7 +9,6 @@
 #include "common/geometry/triangle_distance.h"
 #include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
-#include "mesher/distance/narrow_band.h"
 #include "mesher/tuning/complex_tuning.h"
 
 namespace tetwright {
@@ -23,7 +22,9 @@ std::size_t in_leaf(const std::array<int, 3>& v) {
   return static_cast<std::size_t>((v[0] & 7) << 6 | (v[1] & 7) << 3 | (v[2] & 7));
 }
 
-std::uint64_t leaf_of(const std::array<int, 3>& v) { return morton_encode({v[0] >> 3, v[1] >> 3, v[2] >> 3}); }
+std::uint64_t leaf_of(const std::array<int, 3>& v) {
+  return morton_encode({v[0] >> 3, v[1] >> 3, v[2] >> 3});
+}
 
 }  // namespace
 
@@ -101,7 +102,7 @@ ContactZone::Nearest ContactZone::nearest(const Vec3& point) const {
     const double squared = away.squaredNorm();
     if (squared > squared_distance * (1 + Zone::tie)) return best;
     const double along = f.normal.dot(away);
-    // Of equally near triangles the one that faces the point most directly knows its side.
+    // Among equally near triangles the one that faces the point most directly knows its side.
     if (nearest < faces_.size() && squared >= squared_distance * (1 - Zone::tie)) {
       const double aligned = std::abs(along);
       if (aligned < alignment || (aligned == alignment && i > nearest)) return best;
@@ -121,7 +122,7 @@ ContactZone::Nearest ContactZone::nearest(const Vec3& point) const {
 std::optional<ContactZone::Distance> ContactZone::distance(const Vec3& point, RegionIndex region) const {
   const Face* nearest = nullptr;
   Vec3 away = Vec3::Zero();
-  const double limit = level_set_band * level_set_band;
+  const double limit = Zone::reach * Zone::reach;
   tree_.nearest(point, limit, tree_.all(), [&](std::size_t i, double best) {
     const Face& f = faces_[i];
     if (f.behind != region && f.front != region) return best;
@@ -135,7 +136,8 @@ std::optional<ContactZone::Distance> ContactZone::distance(const Vec3& point, Re
   if (!nearest) return {};
   const double value = away.norm();
   if (value > tolerance::smallest_distance) return Distance{value, away / value};
-  return Distance{tolerance::smallest_distance, nearest->front == region ? Vec3(-nearest->normal) : nearest->normal};
+  return Distance{tolerance::smallest_distance,
+                  nearest->front == region ? Vec3(-nearest->normal) : nearest->normal};
 }
 
 }  // namespace tetwright

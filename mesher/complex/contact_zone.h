@@ -16,11 +16,11 @@
 namespace tetwright {
 
 /// Regions and distances around the contacts and junctions of a complex, computed from its triangles: a point
-/// belongs to the region on its side of the nearest triangle, so that no gap opens between bodies that share a
-/// sheet. Voxel coordinates; immutable, all functions may be called concurrently.
+/// belongs to the region on its side of the nearest triangle, so that no gap opens between bodies that share
+/// a sheet. Voxel coordinates; immutable, all functions may be called concurrently.
 class ContactZone {
  public:
-  /// A place on the complex's nearest triangle.
+  /// Regions at the complex's nearest triangle.
   struct Nearest {
     RegionIndex region, across;  ///< on the point's side, and on the other; numbers of the complex
     double distance;

@@ -35,8 +35,8 @@ struct Use {
 class ComplexBuilder {
  public:
   ComplexBuilder(const ImprintedSurfaces& imprinted, const SurfaceSoup& soup, std::size_t bodies,
-                 OverlapRule rule, double tolerance)
-      : imprinted_(imprinted), soup_(soup), bodies_(bodies), rule_(rule), tolerance_(tolerance) {}
+                 double tolerance)
+      : imprinted_(imprinted), soup_(soup), bodies_(bodies), tolerance_(tolerance) {}
 
   ComplexResult build() {
     weld();
@@ -50,7 +50,9 @@ class ComplexBuilder {
 
  private:
   const Vec3& at(Index p) const { return imprinted_.points[p]; }
-  std::span<const Use> uses(Index t) const { return std::span(uses_).subspan(welded_[t].first, welded_[t].count); }
+  std::span<const Use> uses(Index t) const {
+    return std::span(uses_).subspan(welded_[t].first, welded_[t].count);
+  }
   Vec3 area_vector(const Triangle& t) const { return (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])) / 2; }
 
   /// Makes triangles with the same points one. A body's triangles that run both ways cancel.
@@ -77,8 +79,8 @@ class ComplexBuilder {
         const Index source = imprinted_.source[entries[j].triangle];
         const std::uint32_t body = soup_.surface[source];
         std::vector<Use>& own = of_body[body];
-        const auto opposite = std::find_if(own.begin(), own.end(),
-                                           [&](const Use& u) { return u.turned != entries[j].turned; });
+        const auto opposite =
+            std::find_if(own.begin(), own.end(), [&](const Use& u) { return u.turned != entries[j].turned; });
         if (opposite != own.end())
           own.erase(opposite);
         else
@@ -145,7 +147,8 @@ class ComplexBuilder {
       for (const Use& u : uses(t)) step[u.body] += u.turned ? -1 : 1;
       const auto [behind, front] = cells_.sides[t];
       for (std::size_t b = 0; b < bodies_; ++b)
-        if (windings_[behind][b] - windings_[front][b] != step[b]) result_.inconsistent = at(welded_[t].ids[0]);
+        if (windings_[behind][b] - windings_[front][b] != step[b])
+          result_.inconsistent = at(welded_[t].ids[0]);
     }
   }
 
@@ -153,8 +156,7 @@ class ComplexBuilder {
     labels_.assign(cells_.count, outside_region);
     for (Index c = 0; c < cells_.count; ++c)
       for (std::size_t b = 0; b < bodies_; ++b)
-        if (windings_[c][b] > 0 && (rule_ != OverlapRule::first || labels_[c] == outside_region))
-          labels_[c] = static_cast<RegionIndex>(b + 1);
+        if (windings_[c][b] > 0) labels_[c] = static_cast<RegionIndex>(b + 1);
     volumes_.assign(cells_.count, 0);
     areas_.assign(cells_.count, 0);
     places_.assign(cells_.count, Vec3::Zero());
@@ -212,9 +214,10 @@ class ComplexBuilder {
       if (is_thin(front)) beside[front][labels_[behind]] += area;
     }
     for (const auto& [cell, neighbours] : beside) {
-      const RegionIndex to = std::max_element(neighbours.begin(), neighbours.end(), [](const auto& a, const auto& b) {
-                               return a.second < b.second;
-                             })->first;
+      const RegionIndex to =
+          std::max_element(neighbours.begin(), neighbours.end(), [](const auto& a, const auto& b) {
+            return a.second < b.second;
+          })->first;
       if (to == labels_[cell]) continue;
       labels_[cell] = to;
       ++result_.dissolved;
@@ -233,8 +236,7 @@ class ComplexBuilder {
       for (const Use& u : uses(t)) {
         Triangle ids = welded_[t].ids;
         if (u.turned) std::swap(ids[1], ids[2]);
-        out.sources_.push_back(
-            {u.body, static_cast<Index>(result_.body_triangles[u.body].size()), u.turned});
+        out.sources_.push_back({u.body, static_cast<Index>(result_.body_triangles[u.body].size()), u.turned});
         result_.body_triangles[u.body].push_back(ids);
         result_.body_sources[u.body].push_back(u.source);
       }
@@ -276,7 +278,8 @@ class ComplexBuilder {
       for (const Index f : list) {
         triangles.push_back(complex.faces[f].ids);
         contact.area += area_vector(triangles.back()).norm();
-        for (const Index p : triangles.back()) contact.largest_gap = std::max(contact.largest_gap, imprinted_.gap[p]);
+        for (const Index p : triangles.back())
+          contact.largest_gap = std::max(contact.largest_gap, imprinted_.gap[p]);
       }
       DisjointSets sets(list.size());
       const std::vector<EdgeUse> edges = edge_uses(triangles, {});
@@ -290,7 +293,6 @@ class ComplexBuilder {
   const ImprintedSurfaces& imprinted_;
   const SurfaceSoup& soup_;
   std::size_t bodies_;
-  OverlapRule rule_;
   double tolerance_;
   ComplexResult result_;
   std::vector<Welded> welded_;
@@ -303,8 +305,8 @@ class ComplexBuilder {
 };
 
 ComplexResult build_complex(const ImprintedSurfaces& imprinted, const SurfaceSoup& soup, std::size_t bodies,
-                            OverlapRule rule, double tolerance) {
-  return ComplexBuilder(imprinted, soup, bodies, rule, tolerance).build();
+                            double tolerance) {
+  return ComplexBuilder(imprinted, soup, bodies, tolerance).build();
 }
 
 }  // namespace tetwright

@@ -21,7 +21,7 @@ class LabelledComplex {
   /// The part of a body's surface that a triangle is.
   struct Source {
     std::uint32_t body;
-    Index triangle;  ///< of the body's surface as returned by body_surfaces()
+    Index triangle;  ///< index into the body's ComplexResult::body_triangles
     bool turned;     ///< the body's triangle runs the other way
   };
   struct Face {
@@ -74,18 +74,18 @@ struct ComplexResult {
   std::vector<std::vector<Triangle>> body_triangles;
   /// For each of them, the triangle of the body's surface before imprinting.
   std::vector<std::vector<Index>> body_sources;
-  std::vector<BodyOverlap> overlaps;    ///< by pair
-  std::vector<BodyContact> contacts;    ///< by pair
-  std::vector<char> lost;               ///< by body: nothing of it is left after carving
-  std::size_t dissolved = 0;            ///< cells thinner than the tolerance that joined a neighbour
-  std::optional<Vec3> inconsistent;     ///< a place where the cells contradict the bodies' orientation
+  std::vector<BodyOverlap> overlaps;  ///< by pair
+  std::vector<BodyContact> contacts;  ///< by pair
+  std::vector<char> lost;             ///< by body: nothing of it is left after carving
+  std::size_t dissolved = 0;          ///< cells thinner than the tolerance that joined a neighbour
+  std::optional<Vec3> inconsistent;   ///< a point where the cells contradict the bodies' orientation
 };
 
 /// Builds the complex of closed bodies from their imprinted surfaces. A point belongs to the last body that
-/// contains it (positive winding number), by OverlapRule otherwise.
+/// contains it (positive winding number).
 /// \param soup what was imprinted; surfaces are bodies
 /// \param bodies number of bodies
 ComplexResult build_complex(const ImprintedSurfaces& imprinted, const SurfaceSoup& soup, std::size_t bodies,
-                            OverlapRule rule, double tolerance);
+                            double tolerance);
 
 }  // namespace tetwright

@@ -12,7 +12,7 @@ namespace {
 
 /// A triangle at an edge, seen along the edge.
 struct AtEdge {
-  double x, y;      ///< direction from the edge into the triangle
+  double x, y;  ///< direction from the edge into the triangle
   Index triangle;
   bool front_next;  ///< the front is on the counter-clockwise side
 

@@ -32,10 +32,10 @@ struct ImprintedSurfaces {
 /// surfaces are equal or share points or an edge, or are apart.
 ///
 /// Distances up to `tolerance` count as contact: points merge with points, edges and triangles of another
-/// surface within it, and edges that pass each other that closely meet in a common point. Points move onto the
-/// earlier of the two surfaces. New points lie where edges cross edges or triangles. Every triangle is then
-/// divided by a constrained triangulation; this is repeated until nothing is left to do, two to four times.
-/// Moved points may bend the surface by the tolerance.
+/// surface within it, and edges that pass each other that closely meet in a common point. Points move onto
+/// the earlier of the two surfaces. New points lie where edges cross edges or triangles. Every triangle is
+/// then divided by a constrained triangulation; this is repeated until nothing is left to do, two to four
+/// times. Moved points may bend the surface by the tolerance.
 ///
 /// A tolerance works where it is well below the size of facets. O(n log n + pairs of triangles whose boxes
 /// meet). The result does not depend on the number of threads, and its geometry not on the numbers of

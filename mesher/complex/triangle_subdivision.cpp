@@ -12,8 +12,8 @@ namespace {
 constexpr std::uint32_t none = 0xffffffffu;
 constexpr double unit = 0x1p40;
 constexpr std::int64_t whole = std::int64_t{1} << 40;
-/// Two diagonals of a quadrangle count as equally good if the sine of the sum of the angles opposite to one is
-/// below this: far above rounding, far below what affects shapes.
+/// Two diagonals of a quadrangle count as equally good if the sine of the sum of the angles opposite to one
+/// is below this: far above rounding, far below what affects shapes.
 constexpr double cocircular = 1e-9;
 
 /// Sine of the sum of the angles at c and d opposite to the edge ab; negative if the circle through abc
@@ -75,8 +75,8 @@ std::vector<Triangle> TriangleSubdivision::triangles() {
 /// 1 if c is to the left of the line from a to b, -1 to the right, 0 on it.
 int TriangleSubdivision::side(Local a, Local b, Local c) const {
   const Point &p = points_[a], &q = points_[b], &r = points_[c];
-  const __int128 value = static_cast<__int128>(q.x - p.x) * (r.y - p.y) -
-                         static_cast<__int128>(q.y - p.y) * (r.x - p.x);
+  const __int128 value =
+      static_cast<__int128>(q.x - p.x) * (r.y - p.y) - static_cast<__int128>(q.y - p.y) * (r.x - p.x);
   return value > 0 ? 1 : value < 0 ? -1 : 0;
 }
 
@@ -187,8 +187,8 @@ void TriangleSubdivision::split_edge(Local part, int edge, Local point) {
   parts_.emplace_back();
   std::size_t opposite = 0;
   while (parts_[other].across[opposite] != part) ++opposite;
-  halve(part, k, added);             // (o, a, point), (o, point, b)
-  halve(other, opposite, beyond);    // (d, b, point), (d, point, a)
+  halve(part, k, added);           // (o, a, point), (o, point, b)
+  halve(other, opposite, beyond);  // (d, b, point), (d, point, a)
   parts_[part].across[0] = beyond;
   parts_[beyond].across[0] = part;
   parts_[added].across[0] = other;

@@ -10,13 +10,13 @@
 
 namespace tetwright {
 
-/// Subdivides one triangle into a constrained Delaunay triangulation of its corners, of points on its edges and
-/// in its interior, and of segments between them.
+/// Subdivides one triangle into a constrained Delaunay triangulation of its corners, of points on its edges
+/// and in its interior, and of segments between them.
 ///
-/// Predicates are exact: barycentric coordinates are rounded to multiples of 2^-40, points on edges lie exactly
-/// on them. Thus the result covers the triangle once, however points were rounded in space. Which diagonals are
-/// Delaunay is decided in space by positions alone, and ties by the points' numbers, so that two triangles with
-/// the same points and segments on a common part are divided alike there.
+/// Predicates are exact: barycentric coordinates are rounded to multiples of 2^-40, points on edges lie
+/// exactly on them. Thus the result covers the triangle once, however points were rounded in space. Which
+/// diagonals are Delaunay is decided in space by positions alone, and ties by the points' numbers, so that
+/// two triangles with the same points and segments on a common part are divided alike there.
 ///
 /// Cost: about O(n^1.5) for n points.
 class TriangleSubdivision {

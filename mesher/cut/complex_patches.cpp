@@ -32,9 +32,10 @@ ComplexPatches complex_patches(const MesherInput& input, const std::vector<Surfa
     const auto [number, added] =
         numbers.try_emplace({sheet, std::move(of_bodies)}, static_cast<std::uint16_t>(numbers.size()));
     if (numbers.size() > max_patches)
-      throw InputError(input.bodies[0].file, 0,
-                       "the surfaces have more than " + std::to_string(max_patches) +
-                           " patches between sharp edges; use a larger --feature-angle, or --feature-angle off");
+      throw InputError(
+          input.bodies[0].file, 0,
+          "the surfaces have more than " + std::to_string(max_patches) +
+              " patches between sharp edges; use a larger --feature-angle, or --feature-angle off");
     if (added) {
       out.sheet_of_patch.push_back(sheet);
       out.groups.push_back(group);

@@ -129,14 +129,14 @@ std::set<std::size_t> CreaseLabels::sheets_at(Index number) const {
 /// The label of a point where several sheets meet: the nearest curve of theirs, with a patch of each sheet.
 FeatureLabel CreaseLabels::junction_label(const Vec3& p, const std::set<std::size_t>& sheets) const {
   if (sheets.size() < 2) return {};
-  const auto place =
-      surface_.nearest_crease(p, Labelling::surface_reach * cell_, [&](const FeatureSurface::PatchPair& pair) {
+  const auto place = surface_.nearest_crease(
+      p, Labelling::surface_reach * cell_, [&](const FeatureSurface::PatchPair& pair) {
         const std::size_t a = surface_.sheet_of(pair[0]), b = surface_.sheet_of(pair[1]);
         return a != b && sheets.contains(a) && sheets.contains(b);
       });
   if (!place) return {};
   FeatureLabel label{Kind::crease, {place->patches[0], place->patches[1]}, no_index, place->patches};
-  // The same curve separates further patches.
+  // Add the other patches that this curve separates.
   for (std::size_t known = 0; known != label.patches.size();) {
     known = label.patches.size();
     const auto next = surface_.nearest_crease(
@@ -245,7 +245,8 @@ void CreaseLabels::take_corners() {
 std::optional<CreaseLabels::Crossing> CreaseLabels::find_crossing(const SheetEdge& edge) const {
   const Index u = edge.u, v = edge.v;
   const std::size_t sheet = edge.sheet;
-  const PatchSet a = on_sheet(labels_[number_[u]].patches, sheet), b = on_sheet(labels_[number_[v]].patches, sheet);
+  const PatchSet a = on_sheet(labels_[number_[u]].patches, sheet),
+                 b = on_sheet(labels_[number_[v]].patches, sheet);
   const Vec3 &p = mesh_.points[u], &q = mesh_.points[v];
   const Vec3 along = q - p;
   Crossing crossing{u, v, 0.5, {}, {}};

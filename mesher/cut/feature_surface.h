@@ -60,10 +60,10 @@ class FeatureSurface : public ReferenceSurface {
     return corner_points_.nearest(point, {}, max_distance);
   }
 
-  /// The sheet that a face lies on. If the surfaces are one complex, the faces between two of its regions are a
-  /// sheet; otherwise each body's surface is one, and a face between two materials lies on that of the later
-  /// body, since later bodies carve earlier ones. std::nullopt between layers of one body, on the box of a
-  /// meshed outside, and between regions that have no face in common in the complex.
+  /// The sheet that a face lies on. If the surfaces are one complex, the faces between two of its regions are
+  /// a sheet; otherwise each body's surface is one, and a face between two materials lies on that of the
+  /// later body, since later bodies carve earlier ones. std::nullopt between layers of one body, on the box
+  /// of a meshed outside, and between regions that have no face in common in the complex.
   std::optional<std::size_t> sheet_of(const InterfaceTriangle& face) const;
   std::size_t sheet_of(Patch patch) const { return sheet_of_patch_[patch]; }
   /// True if creases include the curves in which three or more sheets meet.

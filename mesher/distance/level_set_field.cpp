@@ -117,7 +117,8 @@ class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
     const bool inside = region.of_complex == here.region;
     const auto distance = field.zone()->distance(place_in_voxels, region.of_complex);
     double best = per_voxel * (distance ? distance->value : level_set_band) * (inside ? -1 : 1);
-    if (gradient) *gradient = distance ? Vec3(inside ? -distance->gradient : distance->gradient) : Vec3(Vec3::Zero());
+    if (gradient)
+      *gradient = distance ? Vec3(inside ? -distance->gradient : distance->gradient) : Vec3(Vec3::Zero());
     for (std::size_t i = 0; i < field.own_terms(r); ++i) {
       const RegionTerm& term = region.terms[i];
       if (!term.offset || signed_term(term) <= best) continue;
@@ -205,7 +206,8 @@ class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
 
   NearestRegion nearest() {
     if (in_zone && field.layers() == 0)
-      return {field.region_of(here.region), static_cast<float>(std::min(per_voxel * here.distance, field.band()))};
+      return {field.region_of(here.region),
+              static_cast<float>(std::min(per_voxel * here.distance, field.band()))};
     const std::size_t count = field.regions().size();
     RegionIndex best = 0;
     double smallest = value(0), next = HUGE_VAL;

@@ -37,15 +37,17 @@ bool boxes_meet(const MesherInput& input, double tolerance) {
   for (std::size_t a = 0; a < input.bodies.size(); ++a)
     for (std::size_t b = 0; b < a; ++b) {
       const RepairedSurface &s = input.bodies[a].surface, &t = input.bodies[b].surface;
-      if ((s.low.array() <= t.high.array() + tolerance).all() && (t.low.array() <= s.high.array() + tolerance).all())
+      if ((s.low.array() <= t.high.array() + tolerance).all() &&
+          (t.low.array() <= s.high.array() + tolerance).all())
         return true;
     }
   return false;
 }
 
 /// Replaces a body's surface by its part of the complex.
-void take_surface(MesherInput::Body& body, const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
-                  const std::vector<Index>& sources, Index first_source) {
+void take_surface(MesherInput::Body& body, const std::vector<Vec3>& points,
+                  const std::vector<Triangle>& triangles, const std::vector<Index>& sources,
+                  Index first_source) {
   RepairedSurface s;
   s.intersects_itself = body.surface.intersects_itself;
   std::vector<Index> number(points.size(), no_index);
@@ -69,10 +71,10 @@ void take_surface(MesherInput::Body& body, const std::vector<Vec3>& points, cons
 }  // namespace
 
 void join_bodies(MesherInput& input, const ContactOptions& options, Progress* progress) {
-  if (options.tolerance && !(*options.tolerance > 0 && std::isfinite(*options.tolerance)))
-    throw UsageError("the contact tolerance must be above 0, not " + short_number(*options.tolerance));
   const double diagonal = (input.high - input.low).norm();
-  const double tolerance = options.tolerance.value_or(ComplexTuning::Contact::tolerance * diagonal);
+  const double tolerance = options.tolerance.value_or(options.relative_tolerance * diagonal);
+  if (!(tolerance > 0 && std::isfinite(tolerance)))
+    throw UsageError("the contact tolerance must be above 0, not " + short_number(tolerance));
   if (input.bodies.size() < 2 || !boxes_meet(input, tolerance)) return;
   const auto not_joined = [&](const std::string& file, const std::string& why, const Vec3& place) {
     input.findings.push_back({.code = DiagnosticCode::bodies_not_joined,
@@ -84,8 +86,9 @@ void join_bodies(MesherInput& input, const ContactOptions& options, Progress* pr
   for (const MesherInput::Body& body : input.bodies)
     if ((body.surface.high - body.surface.low).norm() < ComplexTuning::Contact::min_body * tolerance)
       throw InputError(body.file, 0,
-                       "the contact tolerance of " + short_number(tolerance) + " is too large for '" + body.name +
-                           "', which is only " + short_number((body.surface.high - body.surface.low).norm()) +
+                       "the contact tolerance of " + short_number(tolerance) + " is too large for '" +
+                           body.name + "', which is only " +
+                           short_number((body.surface.high - body.surface.low).norm()) +
                            " across; use a smaller --contact-tolerance");
   const SurfaceSoup soup = soup_of(input);
   const ImprintedSurfaces imprinted = imprint_surfaces(soup, tolerance, progress);
@@ -95,48 +98,47 @@ void join_bodies(MesherInput& input, const ContactOptions& options, Progress* pr
       not_joined(body.file, "its surface is open; contacts are accurate to a cell", body.surface.points[0]);
       return;
     }
-  if (imprinted.unresolved)
-    throw InputError(input.bodies.back().file, 0,
-                     "surfaces that meet at " + place_text(*imprinted.unresolved) +
-                         " cannot be joined within the contact tolerance of " + short_number(tolerance) +
-                         ", which is about the size of their facets there; use a smaller --contact-tolerance");
-  ComplexResult found = build_complex(imprinted, soup, input.bodies.size(), options.overlap, tolerance);
+  if (imprinted.unresolved) {
+    not_joined(input.bodies.back().file,
+               "their facets there are about as small as the contact tolerance of " +
+                   short_number(tolerance) + "; contacts are accurate to a cell",
+               *imprinted.unresolved);
+    return;
+  }
+  ComplexResult found = build_complex(imprinted, soup, input.bodies.size(), tolerance);
   if (found.inconsistent) {
     not_joined(input.bodies.back().file, "a surface crosses itself there; contacts are accurate to a cell",
                *found.inconsistent);
     return;
   }
-  for (std::size_t b = 0; b < input.bodies.size(); ++b)
-    if (found.lost[b])
-      throw InputError(input.bodies[b].file, 0,
-                       "nothing is left of the material '" + input.bodies[b].name +
-                           "': other bodies cover all of it; leave it out, or list it after them");
+  // Meshing refuses a body that later ones cover as a whole.
+  if (std::count(found.lost.begin(), found.lost.end(), 1) > 0) return;
   for (const BodyOverlap& o : found.overlaps) {
     const std::string &a = input.bodies[o.first].name, &b = input.bodies[o.second].name;
     if (options.overlap == OverlapRule::error)
       throw InputError(input.bodies[o.second].file, 0,
                        "the bodies '" + a + "' and '" + b + "' cross at " + place_text(o.place) +
                            ": both claim a volume of " + short_number(o.volume) +
-                           "; separate them, or use --on-overlap later or first");
+                           "; separate them, or let the later one keep it with --on-overlap later");
     input.overlaps.push_back({a, b, o.volume, o.place});
-    input.findings.push_back(
-        {.code = DiagnosticCode::bodies_overlap,
-         .file = input.bodies[o.second].file,
-         .what = "bodies that cross: '" + a + "' and '" + b + "' both claim a volume of " + short_number(o.volume),
-         .done = std::string("it belongs to '") + (options.overlap == OverlapRule::first ? a : b) + "'",
-         .places = {o.place}});
+    input.findings.push_back({.code = DiagnosticCode::bodies_overlap,
+                              .file = input.bodies[o.second].file,
+                              .what = "bodies that cross: '" + a + "' and '" + b +
+                                      "' both claim a volume of " + short_number(o.volume),
+                              .done = "it belongs to '" + b + "'",
+                              .places = {o.place}});
   }
   for (const BodyContact& c : found.contacts)
-    input.contacts.push_back({input.bodies[c.first].name, input.bodies[c.second].name, c.area, c.pieces,
-                              c.largest_gap});
+    input.contacts.push_back(
+        {input.bodies[c.first].name, input.bodies[c.second].name, c.area, c.pieces, c.largest_gap});
   if (!found.complex.any()) return;
   Index first_source = 0;
   for (std::size_t b = 0; b < input.bodies.size(); ++b) {
     const auto count = static_cast<Index>(input.bodies[b].surface.triangles.size());
-    take_surface(input.bodies[b], imprinted.points, found.body_triangles[b], found.body_sources[b], first_source);
+    take_surface(input.bodies[b], imprinted.points, found.body_triangles[b], found.body_sources[b],
+                 first_source);
     first_source += count;
   }
-  input.overlap = options.overlap;
   input.complex = std::make_shared<const LabelledComplex>(std::move(found.complex));
 }
 

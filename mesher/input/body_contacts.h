@@ -6,8 +6,8 @@
 
 namespace tetwright {
 
-/// Joins closed bodies that meet: sets MesherInput::complex, contacts and overlaps, and replaces the surfaces of
-/// the bodies by what they are in the complex. Nothing changes if no two surfaces come closer than the
+/// Joins closed bodies that meet: sets MesherInput::complex, contacts and overlaps, and replaces the surfaces
+/// of the bodies by what they are in the complex. Nothing changes if no two surfaces come closer than the
 /// tolerance.
 /// \param progress may be null
 /// \throws InputError for surfaces that cannot be joined, a body that the tolerance swallows, and bodies that

@@ -17,9 +17,6 @@ struct ComplexGrains {
 /// Surfaces that meet; mesher/README.md, Tuned numbers, explains the terms.
 struct ComplexTuning {
   struct Contact {
-    /// Default tolerance, diagonals of the bounding box: above the rounding of coordinates written with six
-    /// digits, below what a designer means as a gap.
-    static constexpr double tolerance = 1e-5;
     /// Bodies must be larger than this, in tolerances, or little would be left of them.
     static constexpr double min_body = 10;
   };
@@ -37,8 +34,9 @@ struct ComplexTuning {
     /// Squared sine of the angle between segments below which they count as parallel: rounding alone gives
     /// 1e-16.
     static constexpr double parallel = 1e-12;
-    /// A triangle whose height is below this, in tolerances, is flat.
-    static constexpr double flat_share = 0.25;
+    /// A triangle whose height is below this, in tolerances, is flat: its sides could not be told apart. With
+    /// the default tolerance 1e-9 diagonals, far above rounding.
+    static constexpr double flat_share = 1e-4;
     /// Common points of two triangles lie on the line in which their planes cross within this, in tolerances.
     static constexpr double line_reach = 3;
   };

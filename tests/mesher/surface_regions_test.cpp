@@ -3,12 +3,14 @@
 // Groups of a surface's triangles become patches of the dense mesh and keep their borders.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <set>
 #include <string>
 
 #include "tests/common/features/parts.h"
 #include "tests/mesher/test_surfaces.h"
+#include "tetwright/error.h"
 #include "tetwright/mesher.h"
 #include "tetwright/mesher_input.h"
 
@@ -206,13 +208,12 @@ TEST(SurfaceRegions, OfSurfacesThatMeetAreKept) {
     return mesh;
   };
   const DenseMesh dense = mesh_of({{"left", 1, halves("a", 0), "a"}, {"right", 2, halves("b", 1), "b"}}, 38);
-  EXPECT_EQ(dense.report.features[0].found.verdict, SurfacePatches::Verdict::meeting);
-  EXPECT_TRUE(dense.report.creases.segments.empty());
+  EXPECT_EQ(dense.report.features[0].found.verdict, SurfacePatches::Verdict::part);
   std::set<std::string> names;
   for (const auto& [patch, group] : dense.mesh.patch_groups) names.insert(group.name);
   EXPECT_EQ(names, (std::set<std::string>{"a1", "a2", "b1", "b2"}));
-  // Accurate to a cell only, like the curve in which the surfaces meet.
-  EXPECT_FALSE(dense.reference->has_patches());
+  EXPECT_TRUE(dense.reference->has_patches());
+  EXPECT_TRUE(dense.reference->has_junctions());
 }
 
 TEST(SurfaceRegions, OfWhichRepairLeavesNothingAreKnown) {
@@ -229,7 +230,7 @@ TEST(SurfaceRegions, OfWhichRepairLeavesNothingAreKnown) {
   EXPECT_DOUBLE_EQ(input.groups[1].area, 6);
 }
 
-TEST(SurfaceRegions, WhereSurfacesMeetNoCreasesAreKept) {
+TEST(SurfaceRegions, CreasesAndCornersOfBodiesThatTouchAreExact) {
   TriangleMesh above = unit_cube(), apart = unit_cube();
   for (Vec3& p : above.points) p.z() += 1;
   for (Vec3& p : apart.points) p.x() += 3;
@@ -237,10 +238,77 @@ TEST(SurfaceRegions, WhereSurfacesMeetNoCreasesAreKept) {
   const DenseMesh dense =
       mesh_of({{"below", 1, unit_cube(), "a"}, {"above", 2, above, "b"}, {"c", 3, apart, "c"}}, 40);
   ASSERT_EQ(dense.report.features.size(), 3U);
-  EXPECT_EQ(dense.report.features[0].found.verdict, Verdict::meeting);
-  EXPECT_EQ(dense.report.features[1].found.verdict, Verdict::meeting);
-  EXPECT_EQ(dense.report.features[2].found.verdict, Verdict::part);
-  EXPECT_EQ(dense.report.creases.corners.size(), 8U);
+  for (const FeatureReport& f : dense.report.features) EXPECT_EQ(f.found.verdict, Verdict::part);
+  // Each of two sheets that end at the contact has all eight corners, and so has the cube apart.
+  EXPECT_EQ(dense.report.creases.corners.size(), 24U);
+  for (const Vec3& corner : dense.report.creases.corners)
+    EXPECT_TRUE(std::any_of(dense.mesh.points.begin(), dense.mesh.points.end(), [&](const Vec3& p) {
+      return (p - corner).norm() < 1e-9;
+    })) << corner.transpose();
+  double contact = 0;
+  for (const InterfaceTriangle& t : dense.mesh.interfaces) {
+    if (t.pair() != MaterialPair{1, 2}) continue;
+    const Vec3 &a = dense.mesh.points[t.ids[0]], &b = dense.mesh.points[t.ids[1]],
+               &c = dense.mesh.points[t.ids[2]];
+    contact += (b - a).cross(c - a).norm() / 2;
+  }
+  EXPECT_NEAR(contact, 1, 1e-9);
+}
+
+/// Two boxes of other tessellations, turned: no slit of outside between them.
+TEST(SurfaceRegions, ContactOfTurnedBodiesIsOnePiece) {
+  const Eigen::Matrix3d turn = Eigen::AngleAxisd(0.6, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  TriangleMesh low = gridded_cube(3), high = unit_cube();
+  for (Vec3& p : high.points) p.z() += 1;
+  for (TriangleMesh* mesh : {&low, &high})
+    for (Vec3& p : mesh->points) p = turn * p;
+  const MesherInput input = make_mesher_input({{"low", 1, low, "a"}, {"high", 2, high, "b"}});
+  ASSERT_EQ(input.contacts.size(), 1U);
+  EXPECT_NEAR(input.contacts[0].area, 1, 1e-9);
+  EXPECT_EQ(input.contacts[0].pieces, 1U);
+  MesherOptions options;
+  options.resolution = 40;
+  const DenseMesh dense = mesh_surfaces(input, options, nullptr);
+  double contact = 0, volume = 0;
+  std::map<std::array<Index, 2>, int> edges;
+  std::set<Index> points;
+  std::size_t faces = 0;
+  for (const InterfaceTriangle& t : dense.mesh.interfaces) {
+    if (t.pair() != MaterialPair{1, 2}) continue;
+    const Vec3 &a = dense.mesh.points[t.ids[0]], &b = dense.mesh.points[t.ids[1]],
+               &c = dense.mesh.points[t.ids[2]];
+    contact += (b - a).cross(c - a).norm() / 2;
+    ++faces;
+    for (int k = 0; k < 3; ++k) {
+      ++edges[ascending_edge(t.ids[k], t.ids[(k + 1) % 3])];
+      points.insert(t.ids[k]);
+    }
+  }
+  EXPECT_NEAR(contact, 1, 1e-3);
+  // A disc has the Euler characteristic 1.
+  EXPECT_EQ(static_cast<int>(points.size()) - static_cast<int>(edges.size()) + static_cast<int>(faces), 1);
+  for (const Tet& t : dense.mesh.tets) {
+    const Vec3& a = dense.mesh.points[t[0]];
+    volume +=
+        (dense.mesh.points[t[1]] - a).cross(dense.mesh.points[t[2]] - a).dot(dense.mesh.points[t[3]] - a) / 6;
+  }
+  EXPECT_NEAR(volume, 2, 1e-4);
+}
+
+TEST(SurfaceRegions, BodiesThatCrossAreNamedOrRefused) {
+  TriangleMesh second = unit_cube();
+  for (Vec3& p : second.points) p += Vec3(0.5, 0.25, 0.25);
+  const MesherInput input = make_mesher_input({{"a", 1, unit_cube(), "a"}, {"b", 2, second, "b"}});
+  ASSERT_EQ(input.overlaps.size(), 1U);
+  EXPECT_NEAR(input.overlaps[0].volume, 0.5 * 0.75 * 0.75, 1e-9);
+  EXPECT_TRUE(std::any_of(input.findings.begin(), input.findings.end(),
+                          [](const Diagnostic& f) { return f.code == DiagnosticCode::bodies_overlap; }));
+  EXPECT_THROW(make_mesher_input({{"a", 1, unit_cube(), "a"}, {"b", 2, second, "b"}}, {},
+                                 NestedRule::automatic, {.overlap = OverlapRule::error}),
+               InputError);
+  EXPECT_THROW(make_mesher_input({{"a", 1, unit_cube(), "a"}, {"b", 2, second, "b"}}, {},
+                                 NestedRule::automatic, {.tolerance = 1.0}),
+               InputError);
 }
 
 }  // namespace

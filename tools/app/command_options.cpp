@@ -190,6 +190,22 @@ void add_material_options(CLI::App& app, CommandLine& c) {
          "if wound the opposite way, else solid)")
       ->type_name("RULE")
       ->default_str("auto");
+  add_length(app, "--contact-tolerance", c.options.bodies.contact_tolerance,
+             "Join bodies across gaps and overlaps up to this")
+      ->default_str("0.001%");
+  static const std::map<std::string, OverlapRule> overlap_rules{{"later", OverlapRule::later},
+                                                                {"error", OverlapRule::error}};
+  app.add_option_function<std::string>(
+         "--on-overlap",
+         [&c](const std::string& text) {
+           const auto rule = overlap_rules.find(text);
+           if (rule == overlap_rules.end())
+             throw CLI::ValidationError("--on-overlap", "'" + text + "' is not one of later, error");
+           c.options.bodies.overlap = rule->second;
+         },
+         "Give a volume that two crossing bodies claim to: later (the later one), or refuse it: error")
+      ->type_name("RULE")
+      ->default_str("later");
 }
 
 void add_strict(CLI::App& app, CommandLine& c) {

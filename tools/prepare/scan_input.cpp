@@ -76,6 +76,9 @@ bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
     throw UsageError("--split-solids is for surfaces, and the input is a segmented volume");
   if (bodies.nested != NestedRule::automatic)
     throw UsageError("--nested is for surfaces, and the input is a segmented volume");
+  if (bodies.contact_tolerance || bodies.overlap != OverlapRule::later)
+    throw UsageError(
+        "--contact-tolerance and --on-overlap are for surfaces, and the input is a segmented volume");
   return true;
 }
 
@@ -205,7 +208,13 @@ MesherInput read_surfaces(std::vector<Input>& inputs, PrepareRun& run) {
   for (const Layer& l : options.layers)
     layers.push_back({l.name, static_cast<MaterialTag>(surfaces.size() + layers.size() + 1), l.thickness});
   run.progress.throw_if_stopped();
-  MesherInput input = make_mesher_input(std::move(surfaces), std::move(layers), options.nested);
+  ContactOptions contact{.overlap = options.overlap};
+  if (options.contact_tolerance && options.contact_tolerance->percent)
+    contact.relative_tolerance = options.contact_tolerance->value / 100;
+  else if (options.contact_tolerance)
+    contact.tolerance = options.contact_tolerance->value;
+  MesherInput input =
+      make_mesher_input(std::move(surfaces), std::move(layers), options.nested, contact, &run.progress);
   std::vector<Diagnostic>& all = run.report.diagnostics;
   all.insert(all.end(), input.findings.begin(), input.findings.end());
   run.report.patches = patches_of_input(input);

@@ -136,24 +136,25 @@ struct MaterialLayer {
 /// Which body a point belongs to that several contain.
 enum class OverlapRule : std::uint8_t {
   later,  ///< the last one: later bodies carve earlier ones
-  first,  ///< the first one
-  error   ///< none: bodies that cross are refused
+  error   ///< bodies that cross are refused
 };
 
 /// How bodies that meet are joined.
 struct ContactOptions {
-  /// Gaps and overlaps of different bodies up to this are contact, input units; by default 1e-5 of the
-  /// diagonal of the bounding box.
+  /// Gaps and overlaps of different bodies up to this are contact, input units.
   std::optional<double> tolerance;
+  /// Tolerance in diagonals of the bounding box, used where `tolerance` is not given. The default is above
+  /// the rounding of coordinates written with six digits, and below what a designer means as a gap.
+  double relative_tolerance = 1e-5;
   OverlapRule overlap = OverlapRule::later;
 };
 
 /// Faces that two bodies share.
 struct ContactReport {
-  std::string first, second;       ///< materials, in the order of the bodies
-  double area = 0;                 ///< input units squared
-  std::size_t pieces = 0;          ///< connected by edges
-  double largest_distance = 0;     ///< gap or overlap that was closed, input units
+  std::string first, second;    ///< materials, in the order of the bodies
+  double area = 0;              ///< input units squared
+  std::size_t pieces = 0;       ///< connected by edges
+  double largest_distance = 0;  ///< gap or overlap that was closed, input units
 };
 
 /// Two bodies that cross: neither contains the other.
@@ -187,7 +188,6 @@ struct MesherInput {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< bounding box of all bodies, input units
   /// All surfaces as one complex, if some of them meet.
   std::shared_ptr<const LabelledComplex> complex = {};
-  OverlapRule overlap = OverlapRule::later;
   std::vector<ContactReport> contacts = {};  ///< by pair of bodies
   std::vector<OverlapReport> overlaps = {};
 };

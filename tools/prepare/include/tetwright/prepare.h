@@ -136,6 +136,9 @@ struct Layer {
 struct BodyOptions {
   std::vector<Layer> layers;  ///< layers of the first surface, outermost first
   NestedRule nested = NestedRule::automatic;
+  /// Gaps and overlaps of different bodies up to this are contact. std::nullopt: 1e-5 of the diagonal.
+  std::optional<Length> contact_tolerance;
+  OverlapRule overlap = OverlapRule::later;
   /// True: each solid, group or label of a surface's triangles becomes a material of that name instead of a
   /// patch.
   bool split_solids = false;
