@@ -99,18 +99,18 @@ bool ImprintState::is_on(const ImprintEdge& e, std::uint32_t surface) const {
 }
 
 std::vector<ImprintEvent> ImprintState::find_events() const {
-  std::vector<ImprintEvent> events =
-      parallel_collect<ImprintEvent>(0, pairs_.size(), ComplexGrains::pairs,
-                              [&](std::size_t begin, std::size_t end, std::vector<ImprintEvent>& out) {
-                                for (std::size_t i = begin; i < end; ++i) {
-                                  const Part &a = triangles_[pairs_[i][0]], &b = triangles_[pairs_[i][1]];
-                                  ImprintState::points_against(a, pairs_[i][1], out);
-                                  ImprintState::points_against(b, pairs_[i][0], out);
-                                  ImprintState::edges_against(a, b, out);
-                                  ImprintState::pierce(a, pairs_[i][1], out);
-                                  ImprintState::pierce(b, pairs_[i][0], out);
-                                }
-                              });
+  std::vector<ImprintEvent> events = parallel_collect<ImprintEvent>(
+      0, pairs_.size(), ComplexGrains::pairs,
+      [&](std::size_t begin, std::size_t end, std::vector<ImprintEvent>& out) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const Part &a = triangles_[pairs_[i][0]], &b = triangles_[pairs_[i][1]];
+          ImprintState::points_against(a, pairs_[i][1], out);
+          ImprintState::points_against(b, pairs_[i][0], out);
+          ImprintState::edges_against(a, b, out);
+          ImprintState::pierce(a, pairs_[i][1], out);
+          ImprintState::pierce(b, pairs_[i][0], out);
+        }
+      });
   parallel_sort_unique(events);
   return events;
 }
