@@ -176,7 +176,7 @@ TEST(PatchSet, KeepsItsOrderAndItsSize) {
   EXPECT_TRUE(set.meets({3, 9}));
   EXPECT_FALSE(set.meets({2, 9}));
   EXPECT_EQ(set.common({5, 1}).size(), 2U);
-  for (std::uint16_t p = 10; p < 20; ++p) set.insert(p);
+  for (std::uint16_t p = 10; p < 30; ++p) set.insert(p);
   EXPECT_EQ(set.size(), PatchSet::capacity);
 }
 
