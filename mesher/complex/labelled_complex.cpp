@@ -12,6 +12,7 @@
 #include "common/mesh/disjoint_sets.h"
 #include "mesher/complex/surface_cells.h"
 #include "mesher/tuning/complex_tuning.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

@@ -303,12 +303,18 @@ TEST(SurfaceRegions, BodiesThatCrossAreNamedOrRefused) {
   EXPECT_NEAR(input.overlaps[0].volume, 0.5 * 0.75 * 0.75, 1e-9);
   EXPECT_TRUE(std::any_of(input.findings.begin(), input.findings.end(),
                           [](const Diagnostic& f) { return f.code == DiagnosticCode::bodies_overlap; }));
-  EXPECT_THROW(make_mesher_input({{"a", 1, unit_cube(), "a"}, {"b", 2, second, "b"}}, {},
-                                 NestedRule::automatic, {.overlap = OverlapRule::error}),
-               InputError);
-  EXPECT_THROW(make_mesher_input({{"a", 1, unit_cube(), "a"}, {"b", 2, second, "b"}}, {},
-                                 NestedRule::automatic, {.tolerance = 1.0}),
-               InputError);
+  ContactOptions contact;
+  contact.overlap = OverlapRule::error;
+  const auto join = [&] {
+    return make_mesher_input({{"a", 1, unit_cube(), "a"}, {"b", 2, second, "b"}}, {}, NestedRule::automatic,
+                             contact);
+  };
+  EXPECT_THROW(join(), InputError);
+  contact = {};
+  contact.tolerance = 1;  // larger than the bodies' features
+  EXPECT_THROW(join(), InputError);
+  contact.tolerance = 0;
+  EXPECT_THROW(join(), UsageError);
 }
 
 }  // namespace

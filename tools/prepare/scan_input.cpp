@@ -208,7 +208,8 @@ MesherInput read_surfaces(std::vector<Input>& inputs, PrepareRun& run) {
   for (const Layer& l : options.layers)
     layers.push_back({l.name, static_cast<MaterialTag>(surfaces.size() + layers.size() + 1), l.thickness});
   run.progress.throw_if_stopped();
-  ContactOptions contact{.overlap = options.overlap};
+  ContactOptions contact;
+  contact.overlap = options.overlap;
   if (options.contact_tolerance && options.contact_tolerance->percent)
     contact.relative_tolerance = options.contact_tolerance->value / 100;
   else if (options.contact_tolerance)
