@@ -173,14 +173,21 @@ def _():
 
 
 def touching(first, second, radii, contacts, flat_first):
-    """Two bodies that touch in points where the surfaces have these radii: the gap between them is r^2 / 2 times the sum
-    of curvatures at a distance r, and the discs in which it may be closed have the area pi r^2."""
+    """Two bodies that touch in points where the surfaces have these radii. The gap between them is r^2 / 2 times the sum
+    of curvatures at a distance r. It may be closed up to CLOSED_GAP, in discs of the area pi r^2, by either body."""
     bodies = {1: first.surface, 2: second.surface}
     gap = CLOSED_GAP * sf.diagonal(first.surface, second.surface)
-    disc = 2 * np.pi * gap / sum(1 / r for r in radii)
+    curvature = sum(1 / r for r in radii)
+    disc, filling = 2 * np.pi * gap / curvature, contacts * np.pi * gap ** 2 / curvature
     expect = expectations(glued(*bodies.values(), [(0, disc)] * contacts), bodies, ROUND)
-    if flat_first:
-        expect["bodies"]["1"].update(expectations({}, {1: bodies[1]}, FLAT)["bodies"]["1"])
+    for tag, surface in bodies.items():
+        own = FLAT if tag == 1 and flat_first else ROUND
+        volume, distance = sf.volume(*surface), own.distance + gap / sf.diagonal(surface)
+        low, high = 1 - own.volume, 1 + own.volume + filling / volume
+        expect["volume"][str(tag)] = [low * volume, high * volume]
+        expect["bodies"][str(tag)] = {
+            "volume_ratio": [low, high], "crease_p99_rel": [0, own.crease], "corners_missed": 0,
+            "mesh_to_surface_rel": [0, distance], "surface_to_mesh_rel": [0, distance]}
     return Case([first, second], expect, bodies, note="a point contact becomes one disc for each point")
 
 
