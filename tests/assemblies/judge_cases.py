@@ -14,7 +14,6 @@ import fnmatch
 import json
 import pathlib
 import re
-import signal
 import subprocess
 import sys
 import time
@@ -28,7 +27,7 @@ PYTHON = "/usr/bin/python3"
 def bounded(command, folder, timeout):
     """Runs a command in a folder; returns its exit status, None if it took too long, and its output."""
     process = subprocess.Popen(list(map(str, command)), cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-                               stderr=subprocess.PIPE, text=True, errors="replace", start_new_session=True)
+                               stderr=subprocess.PIPE, text=True, errors="replace")
     try:
         out, error = process.communicate(timeout=timeout)
         return process.returncode, out, error
@@ -66,9 +65,7 @@ def tags_by_position(mesh, places):
 
 
 def renamed(case, tags):
-    """Returns the expectations and bodies of a case with the tags of the mesh. A lost material gets a new tag."""
-    unused = iter(range(10 ** 6, 2 * 10 ** 6))
-    tags = {k: next(unused) if t is None else t for k, t in tags.items()}
+    """Returns the expectations and bodies of a case with the tags of the mesh."""
 
     def key(text):
         if found := re.fullmatch(r"material (\d+)", text):
@@ -104,11 +101,19 @@ def patch_misses(mesh, patches):
     return out
 
 
+def without_repeats(misses):
+    """Puts the rows of what is missing altogether into one."""
+    return list(dict.fromkeys(re.sub(r"^(.*): \w+ is None, not .*", r"\1 is missing", miss) for miss in misses))
+
+
 def judged(judge, case, folder, mesh, timeout):
     """Returns the number of tets, the percent below 0.1 sr and the unmet expectations."""
     expect, bodies = case["expect"], case["bodies"]
     if "places" in case:
-        expect, bodies = renamed(case, tags_by_position(folder / mesh, case["places"]))
+        tags = tags_by_position(folder / mesh, case["places"])
+        if lost := [str(k) for k, t in tags.items() if t is None]:
+            return None, None, [f"there are no materials at the positions of {', '.join(lost)}"]
+        expect, bodies = renamed(case, tags)
     command = [PYTHON, judge / "judge_assembly.py", mesh, "--json", "--expect", "expect.json"]
     (folder / "expect.json").write_text(json.dumps(expect))
     for tag, file in bodies.items():
@@ -123,7 +128,7 @@ def judged(judge, case, folder, mesh, timeout):
     # Readers of some formats print lines of their own before.
     rows, end = json.JSONDecoder().raw_decode(out, out.index("{"))
     (folder / "judged.json").write_text(json.dumps(rows, indent=1) + "\n")
-    short = [line.removeprefix("not as expected: ") for line in out[end:].strip().split("\n") if line]
+    short = without_repeats([line.removeprefix("not as expected: ") for line in out[end:].strip().split("\n") if line])
     if "patches" in case:
         short += patch_misses(folder / mesh, case["patches"])
     return rows["tets"], rows["below"], short
@@ -185,5 +190,4 @@ def main():
 
 
 if __name__ == "__main__":
-    signal.signal(signal.SIGINT, signal.default_int_handler)
     sys.exit(main())
