@@ -4,7 +4,6 @@
 #include <array>
 #include <bitset>
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <unordered_map>
 #include <vector>
@@ -32,7 +31,6 @@ class ContactZone {
 
   ContactZone(const LabelledComplex& complex, const GridFrame& voxels);
 
-  bool empty() const { return leaves_.empty(); }
   /// True if the voxel that holds the point is in the zone.
   bool contains(const Vec3& point) const;
   /// \pre contains(point)

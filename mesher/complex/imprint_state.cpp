@@ -4,9 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <span>
 
-#include "common/geometry/box_tree.h"
+#include "common/geometry/box_pairs.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/tuning/complex_tuning.h"
 #include "tetwright/resources.h"
@@ -44,37 +43,19 @@ void ImprintState::find_pairs(bool all) {
   for (Index t = 0; t < triangles_.size(); ++t)
     if (all || triangles_[t].active) listed.push_back(t);
   std::vector<Box3> boxes(listed.size());
-  std::vector<Vec3> middles(listed.size());
   const Vec3 margin = Vec3::Constant(Imprint::box_margin * tolerance_);
   for (std::size_t i = 0; i < listed.size(); ++i) {
     for (const Index p : triangles_[listed[i]].ids) boxes[i].add(at(p));
-    middles[i] = boxes[i].low + boxes[i].high;
     boxes[i].low -= margin;
     boxes[i].high += margin;
     triangles_[listed[i]].active = false;
   }
-  const std::vector<Index> order = median_order(boxes, middles, Imprint::leaf_size);
-  const BoxTree tree(order.size(), Imprint::leaf_size, [&](std::size_t i) { return boxes[order[i]]; });
-  const std::span<const BoxTree::Node> nodes = tree.nodes();
-  pairs_ = parallel_collect<ImprintEdge>(
-      0, nodes.size(), ComplexGrains::nodes,
-      [&](std::size_t begin, std::size_t end, std::vector<ImprintEdge>& found) {
-        for (std::size_t k = begin; k < end; ++k) {
-          if (!tree.is_leaf(nodes[k])) continue;
-          tree.for_each_later_intersecting_leaf(k, [&](std::size_t l) {
-            for (std::size_t i = nodes[k].begin; i < nodes[k].end; ++i)
-              for (std::size_t j = std::max<std::size_t>(nodes[l].begin, i + 1); j < nodes[l].end; ++j) {
-                const Index f = order[i], g = order[j];
-                const Index a = listed[f], b = listed[g];
-                if (triangles_[a].surface != triangles_[b].surface && boxes[f].intersects(boxes[g]))
-                  found.push_back({std::min(a, b), std::max(a, b)});
-              }
-          });
-        }
-      });
-  parallel_sort(pairs_);
+  pairs_ = intersecting_pairs(boxes, [&](Index i, Index k) {
+    return triangles_[listed[i]].surface != triangles_[listed[k]].surface;
+  });
+  for (ImprintEdge& pair : pairs_) pair = {listed[pair[0]], listed[pair[1]]};
   for (const auto& [a, b] : pairs_) triangles_[a].active = triangles_[b].active = true;
-  ImprintState::find_memberships();
+  find_memberships();
 }
 
 /// Lists the surfaces of the points and edges of active triangles.
@@ -104,11 +85,11 @@ std::vector<ImprintEvent> ImprintState::find_events() const {
       [&](std::size_t begin, std::size_t end, std::vector<ImprintEvent>& out) {
         for (std::size_t i = begin; i < end; ++i) {
           const Part &a = triangles_[pairs_[i][0]], &b = triangles_[pairs_[i][1]];
-          ImprintState::points_against(a, pairs_[i][1], out);
-          ImprintState::points_against(b, pairs_[i][0], out);
-          ImprintState::edges_against(a, b, out);
-          ImprintState::pierce(a, pairs_[i][1], out);
-          ImprintState::pierce(b, pairs_[i][0], out);
+          points_against(a, pairs_[i][1], out);
+          points_against(b, pairs_[i][0], out);
+          edges_against(a, b, out);
+          pierce(a, pairs_[i][1], out);
+          pierce(b, pairs_[i][0], out);
         }
       });
   parallel_sort_unique(events);

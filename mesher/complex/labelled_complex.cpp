@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <memory>
 
 #include "common/features/edge_uses.h"
 #include "common/geometry/box_tree.h"
@@ -111,8 +110,8 @@ class ComplexBuilder {
       for (const Index p : welded_[t].ids) boxes[t].add(at(p));
       middles[t] = boxes[t].low + boxes[t].high;
     }
-    const std::vector<Index> order = median_order(boxes, middles, ComplexTuning::Imprint::leaf_size);
-    const BoxTree tree(order.size(), ComplexTuning::Imprint::leaf_size,
+    const std::vector<Index> order = median_order(boxes, middles, ComplexTuning::Cells::leaf_size);
+    const BoxTree tree(order.size(), ComplexTuning::Cells::leaf_size,
                        [&](std::size_t i) { return boxes[order[i]]; });
     windings_.assign(cells_.count, std::vector<int>(bodies_, 0));
     parallel_for(0, cells_.count, ComplexGrains::divided, [&](std::size_t begin, std::size_t end) {
@@ -207,7 +206,9 @@ class ComplexBuilder {
   /// Gives cells that are thinner than the tolerance to the neighbour with the largest common area.
   void dissolve_thin_cells() {
     std::map<Index, std::map<RegionIndex, double>> beside;
-    const auto is_thin = [&](Index c) { return std::abs(volumes_[c]) < tolerance_ * areas_[c] / 4; };
+    const auto is_thin = [&](Index c) {
+      return std::abs(volumes_[c]) < ComplexTuning::Cells::thin_share * tolerance_ * areas_[c];
+    };
     for (Index t = 0; t < welded_.size(); ++t) {
       const auto [behind, front] = cells_.sides[t];
       const double area = area_vector(welded_[t].ids).norm();
@@ -219,9 +220,7 @@ class ComplexBuilder {
           std::max_element(neighbours.begin(), neighbours.end(), [](const auto& a, const auto& b) {
             return a.second < b.second;
           })->first;
-      if (to == labels_[cell]) continue;
       labels_[cell] = to;
-      ++result_.dissolved;
     }
   }
 

@@ -77,7 +77,6 @@ struct ComplexResult {
   std::vector<BodyOverlap> overlaps;  ///< by pair
   std::vector<BodyContact> contacts;  ///< by pair
   std::vector<char> lost;             ///< by body: nothing of it is left after carving
-  std::size_t dissolved = 0;          ///< cells thinner than the tolerance that joined a neighbour
   std::optional<Vec3> inconsistent;   ///< a point where the cells contradict the bodies' orientation
 };
 

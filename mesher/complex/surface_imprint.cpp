@@ -4,18 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
-#include <span>
 #include <unordered_map>
 #include <utility>
 
-#include "common/geometry/box_tree.h"
 #include "common/mesh/disjoint_sets.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/complex/imprint_state.h"
 #include "mesher/complex/triangle_subdivision.h"
 #include "mesher/tuning/complex_tuning.h"
-#include "tetwright/error.h"
 #include "tetwright/resources.h"
 
 namespace tetwright {
@@ -45,6 +41,8 @@ class Imprinter : private ImprintState {
     for (int round = 0; round < Imprint::max_rounds; ++round) {
       if (progress_) progress_->throw_if_stopped();
       find_pairs(round == 0);
+      if (round == 0)
+        budget = std::max(budget, Imprint::points_per_pair * static_cast<double>(pairs_.size()));
       std::vector<Event> events = find_events();
       if (events.empty()) events = find_slivers();
       if (events.empty()) {
@@ -58,8 +56,6 @@ class Imprinter : private ImprintState {
         merge(events);
         continue;
       }
-      if (budget == Imprint::max_new_points)
-        budget = std::max(budget, Imprint::points_per_pair * static_cast<double>(pairs_.size()));
       if (static_cast<double>(points_.size() - first_new_) > budget) break;
       insert(events);
     }
@@ -67,7 +63,7 @@ class Imprinter : private ImprintState {
       result_.triangles.push_back(t.ids);
       result_.source.push_back(t.source);
     }
-    result_.any |= !pairs_with_common_points().empty();
+    result_.any |= have_common_points();
     result_.points = std::move(points_);
     return std::move(result_);
   }
@@ -79,15 +75,11 @@ class Imprinter : private ImprintState {
     bool operator<(const OnEdge& o) const { return share != o.share ? share < o.share : point < o.point; }
   };
 
-  std::vector<Edge> pairs_with_common_points() const {
-    std::vector<Edge> common;
-    for (const Edge& pair : pairs_)
-      for (const Index p : triangles_[pair[0]].ids)
-        if (has(triangles_[pair[1]].ids, p)) {
-          common.push_back(pair);
-          break;
-        }
-    return common;
+  bool have_common_points() const {
+    return std::any_of(pairs_.begin(), pairs_.end(), [&](const Edge& pair) {
+      const Triangle& t = triangles_[pair[0]].ids;
+      return std::any_of(t.begin(), t.end(), [&](Index p) { return has(triangles_[pair[1]].ids, p); });
+    });
   }
 
   Vec3 place_of(const Event& e) const { return e.point != no_index ? at(e.point) : at(e.first[0]); }
@@ -211,7 +203,7 @@ class Imprinter : private ImprintState {
           break;
         case Event::Kind::point_on_edge: {
           const auto [share, squared] = foot_on(at(e.point), at(e.first[0]), at(e.first[1]));
-          if (squared > 4 * squared_) break;  // another event has moved the point away
+          if (squared > Imprint::moved_away * squared_) break;  // by another event
           note_gap(e.point, std::sqrt(squared));
           if (e.owner < owner_[e.point]) {
             points_[e.point] = at(e.first[0]) + share * (at(e.first[1]) - at(e.first[0]));
@@ -354,6 +346,7 @@ class Imprinter : private ImprintState {
     for (const Index p : common)
       if (foot_on(at(p), at(low), at(high)).second > reach * reach) return;
     std::vector<OnEdge> order;
+    order.reserve(common.size());
     for (const Index p : common) order.push_back({foot_on(at(p), at(low), at(high)).first, p});
     std::sort(order.begin(), order.end());
     for (std::size_t i = 0; i + 1 < order.size(); ++i) {

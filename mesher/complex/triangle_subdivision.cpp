@@ -99,7 +99,7 @@ TriangleSubdivision::Local TriangleSubdivision::find(Index number) const {
   return known == local_.end() ? none : known->second;
 }
 
-TriangleSubdivision::Local TriangleSubdivision::insert(Point point) {
+TriangleSubdivision::Local TriangleSubdivision::insert(const Point& point) {
   const auto added = static_cast<Local>(points_.size());
   points_.push_back(point);
   // Walk towards the point. Exact predicates on a triangulation of a convex polygon: a walk that turns at the

@@ -51,7 +51,7 @@ class TriangleSubdivision {
   };
 
   int side(Local a, Local b, Local c) const;
-  Local insert(Point point);
+  Local insert(const Point& point);
   void split_edge(Local part, int edge, Local point);
   void split_part(Local part, Local point);
   void link(Local part, Local before, Local after);

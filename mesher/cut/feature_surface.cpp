@@ -14,16 +14,15 @@ namespace tetwright {
 FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches,
                                double corner_reach, std::shared_ptr<const MaterialField> field)
     : field_(std::move(field)) {
-  collected_ = std::make_unique<Collected>();
+  Items items;
   for (const MaterialLayer& layer : input.layers) bodies_[layer.tag] = 0;
   for (std::size_t b = 0; b < input.bodies.size(); ++b) bodies_[input.bodies[b].tag] = b;
   if (input.complex)
-    add_complex(input, patches, corner_reach);
+    add_complex(input, patches, corner_reach, items);
   else
-    add_bodies(input, patches, corner_reach);
+    add_bodies(input, patches, corner_reach, items);
   no_patch_ = static_cast<Patch>(groups_.size());
-  auto [points, triangles, segments] = std::move(*collected_);
-  collected_.reset();
+  auto [points, triangles, segments] = std::move(items);
   creases_ = ProjectionTree(points, std::move(segments));
   std::vector<Vec3> corner_places;
   std::vector<ProjectionTree::Item> corner_items;
@@ -44,22 +43,22 @@ FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<Surfa
 
 void FeatureSurface::add_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                                    const std::vector<std::uint16_t>& patches, Patch first_patch,
-                                   double corner_reach) {
-  const auto first = static_cast<Index>(collected_->points.size());
+                                   double corner_reach, Items& items) {
+  const auto first = static_cast<Index>(items.points.size());
   const auto patch_of = [&](std::uint16_t local) { return static_cast<Patch>(first_patch + local); };
-  collected_->points.insert(collected_->points.end(), points.begin(), points.end());
+  items.points.insert(items.points.end(), points.begin(), points.end());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const Triangle& c = triangles[t];
     const Patch patch = patch_of(patches[t]);
-    collected_->triangles.push_back({{first + c[0], first + c[1], first + c[2]},
-                                     {patch, static_cast<std::uint32_t>(sheet_of_patch_[patch]), 0}});
+    items.triangles.push_back({{first + c[0], first + c[1], first + c[2]},
+                               {patch, static_cast<std::uint32_t>(sheet_of_patch_[patch]), 0}});
   }
   const SurfaceCreases found = find_creases(points, triangles, patches, corner_reach);
   std::map<Index, std::set<Patch>> at_corners;
   for (const Index c : found.corners) at_corners[c] = {};
   for (const SurfaceCreases::Segment& s : found.segments) {
-    collected_->segments.push_back({{first + s.ends[0], first + s.ends[1], first + s.ends[1]},
-                                    {patch_of(s.patches[0]), patch_of(s.patches[1]), 0}});
+    items.segments.push_back({{first + s.ends[0], first + s.ends[1], first + s.ends[1]},
+                              {patch_of(s.patches[0]), patch_of(s.patches[1]), 0}});
     for (const Index end : s.ends)
       if (const auto corner = at_corners.find(end); corner != at_corners.end())
         for (const std::uint16_t p : s.patches) corner->second.insert(patch_of(p));
@@ -69,7 +68,7 @@ void FeatureSurface::add_triangles(const std::vector<Vec3>& points, const std::v
 }
 
 void FeatureSurface::add_bodies(const MesherInput& input, const std::vector<SurfacePatches>& patches,
-                                double corner_reach) {
+                                double corner_reach, Items& items) {
   for (std::size_t b = 0; b < input.bodies.size(); ++b) {
     const RepairedSurface& surface = input.bodies[b].surface;
     if (patches[b].verdict == SurfacePatches::Verdict::meeting && !patches[b].any()) {
@@ -82,17 +81,17 @@ void FeatureSurface::add_bodies(const MesherInput& input, const std::vector<Surf
     for (std::size_t t = 0; t < surface.groups.size(); ++t)
       groups_[first_patch + patches[b].patches[t]] = input.bodies[b].groups[surface.groups[t]];
     add_triangles(surface.points, surface.triangles, patches[b].patches, static_cast<Patch>(first_patch),
-                  corner_reach);
+                  corner_reach, items);
   }
 }
 
 void FeatureSurface::add_complex(const MesherInput& input, const std::vector<SurfacePatches>& patches,
-                                 double corner_reach) {
+                                 double corner_reach, Items& items) {
   const ComplexPatches found = complex_patches(input, patches);
   sheets_ = found.sheets;
   sheet_of_patch_ = found.sheet_of_patch;
   groups_ = found.groups;
-  add_triangles(input.complex->points, found.triangles, found.patches, 0, corner_reach);
+  add_triangles(input.complex->points, found.triangles, found.patches, 0, corner_reach, items);
 }
 
 std::optional<std::size_t> FeatureSurface::sheet_of(const InterfaceTriangle& face) const {

@@ -98,11 +98,19 @@ class FeatureSurface : public ReferenceSurface {
  private:
   std::shared_ptr<const MaterialField> field_;
   Patch no_patch_ = 0;
-  void add_complex(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach);
-  void add_bodies(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach);
+  /// Items of the trees, until these are built.
+  struct Items {
+    std::vector<Vec3> points;
+    std::vector<ProjectionTree::Item> triangles, segments;
+  };
+  void add_complex(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach,
+                   Items& items);
+  void add_bodies(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach,
+                  Items& items);
   /// Adds triangles with their patches, and the creases between these.
   void add_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
-                     const std::vector<std::uint16_t>& patches, Patch first_patch, double corner_reach);
+                     const std::vector<std::uint16_t>& patches, Patch first_patch, double corner_reach,
+                     Items& items);
 
   std::map<MaterialTag, std::size_t> bodies_;  ///< body of each material and layer
   /// Sheet of each pair of regions of the complex, ascending; empty without a complex.
@@ -112,11 +120,6 @@ class FeatureSurface : public ReferenceSurface {
   std::vector<Vec3> normals_;  ///< of the items of triangles_
   std::vector<Corner> corners_;
   std::vector<SurfaceRegion> groups_;  ///< by patch
-  struct Collected {
-    std::vector<Vec3> points;
-    std::vector<ProjectionTree::Item> triangles, segments;
-  };
-  std::unique_ptr<Collected> collected_;  ///< while the trees are not built
 };
 
 }  // namespace tetwright

@@ -205,9 +205,8 @@ class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
   }
 
   NearestRegion nearest() {
-    if (in_zone && field.layers() == 0)
-      return {field.region_of(here.region),
-              static_cast<float>(std::min(per_voxel * here.distance, field.band()))};
+    if (in_zone && !field.has_layers())
+      return {here.region, static_cast<float>(std::min(per_voxel * here.distance, field.band()))};
     const std::size_t count = field.regions().size();
     RegionIndex best = 0;
     double smallest = value(0), next = HUGE_VAL;
@@ -252,7 +251,7 @@ LevelSetField::LevelSetField(const GridFrame& voxels, std::vector<std::shared_pt
       zone_(std::move(zone)) {
   const std::vector<RegionTerm>& carving = level_set_regions_[outside_region].terms;
   for (std::size_t r = 1; r < level_set_regions_.size(); ++r)
-    layers_ += r > 1 && level_set_regions_[r].of_complex == level_set_regions_[r - 1].of_complex;
+    has_layers_ |= r > 1 && level_set_regions_[r].of_complex == level_set_regions_[r - 1].of_complex;
   for (const LevelSetRegion& region : level_set_regions_) {
     const auto shared =
         std::mismatch(region.terms.rbegin(), region.terms.rend(), carving.rbegin(), carving.rend());

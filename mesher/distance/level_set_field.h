@@ -52,10 +52,8 @@ class LevelSetField final : public MaterialField, private WallChanges {
   /// ones, so a region's last terms are the last ones of the outside.
   std::size_t own_terms(RegionIndex region) const { return own_terms_[region]; }
   const ContactZone* zone() const { return zone_.get(); }
-  /// The number of layers cut from the first body.
-  std::size_t layers() const { return layers_; }
-  /// The region of a body that has no layers, by its number in the complex.
-  RegionIndex region_of(RegionIndex of_complex) const { return of_complex; }
+  /// Whether layers are cut from the first body; if not, regions have their numbers in the complex.
+  bool has_layers() const { return has_layers_; }
 
  private:
   class Sampler;
@@ -68,7 +66,7 @@ class LevelSetField final : public MaterialField, private WallChanges {
   std::vector<LevelSetRegion> level_set_regions_;
   std::vector<std::size_t> own_terms_;  ///< by region
   std::shared_ptr<const ContactZone> zone_;
-  std::size_t layers_ = 0;
+  bool has_layers_ = false;
 };
 
 }  // namespace tetwright

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
-#include "common/geometry/box_tree.h"
 #include "common/message_text.h"
 #include "mesher/complex/labelled_complex.h"
 #include "mesher/input/surface_measures.h"
@@ -68,6 +68,25 @@ void take_surface(MesherInput::Body& body, const std::vector<Vec3>& points,
   body.surface = std::move(s);
 }
 
+/// Reports that two bodies cross, or refuses it.
+void add_overlap(const BodyOverlap& overlap, OverlapRule rule, MesherInput& input) {
+  const MesherInput::Body &first = input.bodies[overlap.first], &second = input.bodies[overlap.second];
+  std::string names = "'";
+  names.append(first.name).append("' and '").append(second.name).append("'");
+  const std::string volume = short_number(overlap.volume);
+  if (rule == OverlapRule::error)
+    throw InputError(second.file, 0,
+                     "the bodies " + names + " cross at " + place_text(overlap.place) +
+                         ": both claim a volume of " + volume +
+                         "; separate them, or let the later one keep it with --on-overlap later");
+  input.overlaps.push_back({first.name, second.name, overlap.volume, overlap.place});
+  input.findings.push_back({.code = DiagnosticCode::bodies_overlap,
+                            .file = second.file,
+                            .what = "bodies that cross: " + names + " both claim a volume of " + volume,
+                            .done = "it belongs to '" + second.name + "'",
+                            .places = {overlap.place}});
+}
+
 }  // namespace
 
 void join_bodies(MesherInput& input, const ContactOptions& options, Progress* progress) {
@@ -113,21 +132,7 @@ void join_bodies(MesherInput& input, const ContactOptions& options, Progress* pr
   }
   // Meshing refuses a body that later ones cover as a whole.
   if (std::count(found.lost.begin(), found.lost.end(), 1) > 0) return;
-  for (const BodyOverlap& o : found.overlaps) {
-    const std::string &a = input.bodies[o.first].name, &b = input.bodies[o.second].name;
-    if (options.overlap == OverlapRule::error)
-      throw InputError(input.bodies[o.second].file, 0,
-                       "the bodies '" + a + "' and '" + b + "' cross at " + place_text(o.place) +
-                           ": both claim a volume of " + short_number(o.volume) +
-                           "; separate them, or let the later one keep it with --on-overlap later");
-    input.overlaps.push_back({a, b, o.volume, o.place});
-    input.findings.push_back({.code = DiagnosticCode::bodies_overlap,
-                              .file = input.bodies[o.second].file,
-                              .what = "bodies that cross: '" + a + "' and '" + b +
-                                      "' both claim a volume of " + short_number(o.volume),
-                              .done = "it belongs to '" + b + "'",
-                              .places = {o.place}});
-  }
+  for (const BodyOverlap& o : found.overlaps) add_overlap(o, options.overlap, input);
   for (const BodyContact& c : found.contacts)
     input.contacts.push_back(
         {input.bodies[c.first].name, input.bodies[c.second].name, c.area, c.pieces, c.largest_gap});

@@ -8,10 +8,8 @@ namespace tetwright {
 /// Items that a parallel loop hands out at a time: enough to outweigh the handing out, few enough to keep
 /// all threads busy to the end.
 struct ComplexGrains {
-  static constexpr std::size_t nodes = 512;    ///< of a tree of triangles
-  static constexpr std::size_t pairs = 2048;   ///< of triangles, compared with each other
-  static constexpr std::size_t divided = 64;   ///< triangles divided into parts
-  static constexpr std::size_t queries = 256;  ///< searches for the nearest triangle
+  static constexpr std::size_t pairs = 2048;  ///< of triangles, compared with each other
+  static constexpr std::size_t divided = 64;  ///< triangles divided into parts
 };
 
 /// Surfaces that meet; mesher/README.md, Tuned numbers, explains the terms.
@@ -22,7 +20,6 @@ struct ComplexTuning {
   };
 
   struct Imprint {
-    static constexpr std::size_t leaf_size = 4;
     /// Boxes of triangles grow by this, in tolerances: points move by up to one in each round.
     static constexpr double box_margin = 2;
     /// Rounds until two surfaces have only points and edges in common: two to four in general, more where a
@@ -31,6 +28,9 @@ struct ComplexTuning {
     /// Limits of new points: in any case, and for each pair of triangles whose boxes meet at first. Crossing
     /// surfaces need about two for each pair that crosses.
     static constexpr double max_new_points = 100'000, points_per_pair = 8;
+    /// Squared distance, in squared tolerances, beyond which a point that another step of the same round has
+    /// moved is no longer put on an edge.
+    static constexpr double moved_away = 4;
     /// Squared sine of the angle between segments below which they count as parallel: rounding alone gives
     /// 1e-16.
     static constexpr double parallel = 1e-12;
@@ -39,6 +39,13 @@ struct ComplexTuning {
     static constexpr double flat_share = 1e-4;
     /// Common points of two triangles lie on the line in which their planes cross within this, in tolerances.
     static constexpr double line_reach = 3;
+  };
+
+  struct Cells {
+    static constexpr std::size_t leaf_size = 4;  ///< of the tree of triangles
+    /// A cell joins a neighbour if its volume is below this, in tolerances times the area around it: a slab
+    /// of half the tolerance, whose area counts twice.
+    static constexpr double thin_share = 0.25;
   };
 
   /// Where regions are decided by the triangles.

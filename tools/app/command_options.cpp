@@ -4,6 +4,9 @@
 #include <CLI/CLI.hpp>
 #include <limits>
 #include <map>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "common/samples/samples.h"
 #include "tetwright/io.h"
@@ -147,6 +150,26 @@ void add_labels(CLI::App& app, CommandLine& c) {
       ->default_str(std::to_string(default_min_voxels));
 }
 
+/// Adds an option whose value is one of `rules`, the first of them by default.
+template <class Rule>
+void add_rule(CLI::App& app, const std::string& name, Rule& to,
+              const std::vector<std::pair<std::string, Rule>>& rules, const std::string& description) {
+  const auto parse = [name, rules, &to](const std::string& text) {
+    std::string names;
+    for (const auto& [word, rule] : rules) {
+      if (word == text) {
+        to = rule;
+        return;
+      }
+      names += (names.empty() ? "" : ", ") + word;
+    }
+    throw CLI::ValidationError(name, "'" + text + "' is not one of " + names);
+  };
+  app.add_option_function<std::string>(name, parse, description)
+      ->type_name("RULE")
+      ->default_str(rules[0].first);
+}
+
 void add_material_options(CLI::App& app, CommandLine& c) {
   app.add_option_function<std::vector<std::string>>(
          "--material",
@@ -173,39 +196,21 @@ void add_material_options(CLI::App& app, CommandLine& c) {
       ->expected(1)
       ->type_name("NAME=THICKNESS")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  static const std::map<std::string, NestedRule> nested_rules{{"auto", NestedRule::automatic},
-                                                              {"cavity", NestedRule::cavity},
-                                                              {"solid", NestedRule::solid},
-                                                              {"material", NestedRule::material}};
-  app.add_option_function<std::string>(
-         "--nested",
-         [&c](const std::string& text) {
-           const auto rule = nested_rules.find(text);
-           if (rule == nested_rules.end())
-             throw CLI::ValidationError("--nested",
-                                        "'" + text + "' is not one of auto, cavity, solid, material");
-           c.options.bodies.nested = rule->second;
-         },
-         "Treat closed parts inside others as: cavity, solid, material (a separate one), or auto (cavities "
-         "if wound the opposite way, else solid)")
-      ->type_name("RULE")
-      ->default_str("auto");
+  add_rule<NestedRule>(
+      app, "--nested", c.options.bodies.nested,
+      {{"auto", NestedRule::automatic},
+       {"cavity", NestedRule::cavity},
+       {"solid", NestedRule::solid},
+       {"material", NestedRule::material}},
+      "Treat closed parts inside others as: cavity, solid, material (a separate one), or auto "
+      "(cavities if wound the opposite way, else solid)");
   add_length(app, "--contact-tolerance", c.options.bodies.contact_tolerance,
              "Join bodies across gaps and overlaps up to this")
       ->default_str("0.001%");
-  static const std::map<std::string, OverlapRule> overlap_rules{{"later", OverlapRule::later},
-                                                                {"error", OverlapRule::error}};
-  app.add_option_function<std::string>(
-         "--on-overlap",
-         [&c](const std::string& text) {
-           const auto rule = overlap_rules.find(text);
-           if (rule == overlap_rules.end())
-             throw CLI::ValidationError("--on-overlap", "'" + text + "' is not one of later, error");
-           c.options.bodies.overlap = rule->second;
-         },
-         "Give a volume that two crossing bodies claim to: later (the later one), or refuse it: error")
-      ->type_name("RULE")
-      ->default_str("later");
+  add_rule<OverlapRule>(
+      app, "--on-overlap", c.options.bodies.overlap,
+      {{"later", OverlapRule::later}, {"error", OverlapRule::error}},
+      "Give a volume that two crossing bodies claim to: later (the later one), or refuse it: error");
 }
 
 void add_strict(CLI::App& app, CommandLine& c) {
