@@ -35,7 +35,7 @@ class LevelSetField final : public MaterialField, private WallChanges {
   /// \param regions the first is the outside
   /// \param zone where bodies meet, or null: there regions are decided by the triangles
   LevelSetField(const GridFrame& voxels, std::vector<std::shared_ptr<const LevelSet>> level_sets,
-                std::vector<LevelSetRegion> regions, std::shared_ptr<const ContactZone> zone,
+                std::vector<LevelSetRegion> regions, std::shared_ptr<const ContactZone> zone = {},
                 int refinement = 0);
   ~LevelSetField() override;
 
