@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "common/geometry/predicates.h"
 #include "common/parallel/parallel_sort.h"
@@ -30,17 +31,15 @@ class Fitter {
       : mesh_(mesh), surface_(surface), labels_(labels), field_(field), cell_(cell) {}
 
   void run() {
-    for (const double floor : Fitting::pass_floors) {
-      std::vector<PointMove> moves = remaining_moves(floor);
-      if (moves.empty()) return;
-      displace_with_backtracking(mesh_.points, mesh_.tets, moves,
-                                 floor * CutTuning::Shapes::tangent_of_bad_tet);
+    if (surface_.has_junctions()) unfold_junctions();
+    std::vector<double> floors(std::begin(Fitting::pass_floors), std::end(Fitting::pass_floors));
+    const double last = floors.back();
+    if (surface_.has_junctions()) floors.insert(floors.end(), Fitting::junction_passes, last);
+    for (const double floor : floors) {
+      if (!move(floor)) return;
       make_room(remaining_moves(floor));
     }
-    std::vector<PointMove> moves = remaining_moves(Fitting::pass_floors[std::size(Fitting::pass_floors) - 1]);
-    displace_with_backtracking(
-        mesh_.points, mesh_.tets, moves,
-        Fitting::pass_floors[std::size(Fitting::pass_floors) - 1] * CutTuning::Shapes::tangent_of_bad_tet);
+    move(last);
   }
 
  private:
@@ -63,6 +62,80 @@ class Fitter {
     return {};
   }
 
+  /// The two neighbours of each point along a junction of the mesh; no entry for ends and branches.
+  std::map<Index, std::array<Index, 2>> junction_neighbours() const {
+    struct Side {
+      Index u, v;
+      std::size_t sheet;
+      auto operator<=>(const Side&) const = default;
+    };
+    std::vector<Side> sides;
+    for (const InterfaceTriangle& t : mesh_.interfaces)
+      if (const auto sheet = surface_.sheet_of(t))
+        for (std::size_t k = 0; k < 3; ++k) {
+          const Index u = t.ids[k], v = t.ids[(k + 1) % 3];
+          const auto may_follow = [&](Index p) {
+            return labels_.of(p).kind == Kind::crease || labels_.of(p).kind == Kind::corner;
+          };
+          if (may_follow(u) && may_follow(v)) sides.push_back({std::min(u, v), std::max(u, v), *sheet});
+        }
+    std::sort(sides.begin(), sides.end());
+    sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
+    std::map<Index, std::vector<Index>> next;
+    for (auto first = sides.begin(); first != sides.end();) {
+      const auto end = std::find_if_not(first, sides.end(),
+                                        [&](const Side& s) { return s.u == first->u && s.v == first->v; });
+      if (end - first > 1) {
+        next[first->u].push_back(first->v);
+        next[first->v].push_back(first->u);
+      }
+      first = end;
+    }
+    std::map<Index, std::array<Index, 2>> neighbours;
+    for (const auto& [p, others] : next)
+      if (others.size() == 2 && labels_.of(p).kind == Kind::crease) neighbours[p] = {others[0], others[1]};
+    return neighbours;
+  }
+
+  /// Finds other targets for points of junctions that would change their order along the curve or come close
+  /// to each other: half way between those of their neighbours. The mesh's junctions are as jagged as cells,
+  /// so that nearest points on the curve need not be in order.
+  void unfold_junctions() {
+    const std::map<Index, std::array<Index, 2>> neighbours = junction_neighbours();
+    std::map<Index, Vec3> targets;
+    const auto target_of = [&](Index p) {
+      if (const auto known = targets.find(p); known != targets.end()) return known->second;
+      return place_of(p, mesh_.points[p]).value_or(mesh_.points[p]);
+    };
+    for (const auto& [p, ends] : neighbours)
+      for (const Index q : {p, ends[0], ends[1]}) targets.try_emplace(q, target_of(q));
+    for (int round = 0; round < Fitting::unfolding_rounds; ++round) {
+      bool any = false;
+      for (const auto& [p, ends] : neighbours) {
+        const Vec3 &from = targets.at(ends[0]), &to = targets.at(ends[1]), &at = targets.at(p);
+        const double min_distance = Fitting::min_junction_share * (to - from).norm();
+        if ((at - from).dot(to - from) > min_distance * (to - from).norm() &&
+            (to - at).dot(to - from) > min_distance * (to - from).norm())
+          continue;
+        const auto middle = place_of(p, (from + to) / 2);
+        if (!middle) continue;
+        any = true;
+        targets.at(p) = *middle;
+        unfolded_[p] = *middle;
+      }
+      if (!any) return;
+    }
+  }
+
+  /// Moves points towards their targets; false if all have arrived.
+  bool move(double floor) {
+    std::vector<PointMove> moves = remaining_moves(floor);
+    if (!moves.empty())
+      displace_with_backtracking(mesh_.points, mesh_.tets, moves,
+                                 floor * CutTuning::Shapes::tangent_of_bad_tet);
+    return !moves.empty();
+  }
+
   /// True for vertices of thickened walls in passes that would spoil their tets.
   bool must_stay(Index p, double floor) const {
     const WallChanges* walls = field_.wall_changes();
@@ -77,7 +150,10 @@ class Fitter {
                                          for (std::size_t i = begin; i < end; ++i) {
                                            if (must_stay(points[i], floor)) continue;
                                            const Vec3& at = mesh_.points[points[i]];
-                                           const auto target = place_of(points[i], at);
+                                           const auto unfolded = unfolded_.find(points[i]);
+                                           const auto target = unfolded != unfolded_.end()
+                                                                   ? std::optional<Vec3>(unfolded->second)
+                                                                   : place_of(points[i], at);
                                            if (target && (*target - at).norm() > Fitting::arrived * cell_)
                                              out.push_back({points[i], at, *target - at});
                                          }
@@ -103,9 +179,11 @@ class Fitter {
                                      });
     };
     std::vector<Index> beside;
+    // Near junctions many points wait for each other, since the curve goes where the regions meet.
+    const int last_role = surface_.has_junctions() ? 1 : 0;
     for (const Index t : tets_with(1))
       for (const Index p : mesh_.tets[t])
-        if (role[p] == 0 && is_movable(p)) {
+        if (role[p] <= last_role && is_movable(p)) {
           role[p] = 2;
           beside.push_back(p);
         }
@@ -181,6 +259,7 @@ class Fitter {
   const CreaseLabels& labels_;
   const MaterialField& field_;
   double cell_;
+  std::map<Index, Vec3> unfolded_;  ///< targets of unfold_junctions()
 };
 
 /// The patch of a face: the one common to its vertices. If several or none are common, the closest and best

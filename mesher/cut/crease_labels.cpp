@@ -31,18 +31,15 @@ CreaseLabels::CreaseLabels(TetMesh& mesh, const FeatureSurface& surface, double 
   label_points();
   smooth_labels();
   take_corners();
-  track(crossing_edges());
+  const std::vector<SheetEdge> chords = find_chords();
+  std::vector<SheetEdge> edges = crossing_edges();
+  edges.insert(edges.end(), chords.begin(), chords.end());
+  track(edges);
+  split_chords(chords);
   snap_points();
   resolve_rest();
   take_kinks();
   dissolve_islands();
-}
-
-template <class Visit>
-void CreaseLabels::for_neighbours(Index number, const Visit& visit) const {
-  for (const Index t : triangles_at_[number])
-    for (const Index p : mesh_.interfaces[t].ids)
-      if (p != points_[number]) visit(p);
 }
 
 void CreaseLabels::number_boundary() {
@@ -79,11 +76,17 @@ void CreaseLabels::label_points() {
       if (!one_pair || !sheet) continue;
       normal.normalize();
       // Between two materials either may be the body.
-      const auto place = surface_.nearest(mesh_.points[points_[i]], *sheet, Labelling::surface_reach * cell_,
-                                          first.other ? nullptr : &normal);
-      if (place) labels_[i] = {Kind::patch, {place->patch}, no_index, {}};
+      labels_[i] = patch_label(mesh_.points[points_[i]], *sheet, first.other ? nullptr : &normal);
     }
   });
+}
+
+/// The label of a point on one sheet; Kind::none if it is far from it.
+/// \param normal of the point's faces; null: either direction
+FeatureLabel CreaseLabels::patch_label(const Vec3& p, std::size_t sheet, const Vec3* normal) const {
+  const auto place = surface_.nearest(p, sheet, Labelling::surface_reach * cell_, normal);
+  if (!place) return {};
+  return {Kind::patch, {place->patch}, no_index, {}};
 }
 
 void CreaseLabels::smooth_labels() {
@@ -346,7 +349,7 @@ void CreaseLabels::resolve_rest() {
           may_snap(near, c->patches))
         label(near) = c->label();
       else
-        split(*c);
+        split(c->u, c->v, c->share, c->label());
     }
   }
 }
@@ -402,89 +405,6 @@ void CreaseLabels::dissolve_islands() {
         labels_[i].patches = {patch};
         break;
       }
-  }
-}
-
-void CreaseLabels::track(const std::vector<SheetEdge>& edges) {
-  // Include the neighbours of crossing edges: after a vertex has moved onto a crease, its other edges may
-  // cross one.
-  std::vector<std::uint8_t> tracked(points_.size(), 0);
-  for (const SheetEdge& edge : edges)
-    for (const Index p : {edge.u, edge.v}) {
-      tracked[number_[p]] = 1;
-      for_neighbours(number_[p], [&](Index q) { tracked[number_[q]] = 1; });
-    }
-  const std::vector<Index> tets = parallel_collect<Index>(
-      0, mesh_.tets.size(), CutGrains::tets,
-      [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
-        for (std::size_t t = begin; t < end; ++t)
-          if (std::any_of(mesh_.tets[t].begin(), mesh_.tets[t].end(),
-                          [&](Index p) { return number_[p] != no_index && tracked[number_[p]]; }))
-            out.push_back(static_cast<Index>(t));
-      });
-  for (const Index t : tets)
-    for (const Index p : mesh_.tets[t])
-      if (number_[p] != no_index && tracked[number_[p]]) tets_at_[number_[p]].push_back(t);
-}
-
-void CreaseLabels::split(const Crossing& crossing) {
-  const Index u = crossing.u, v = crossing.v;
-  // All points near creases are tracked, so at least one end is.
-  const Index known = tets_at_[number_[u]].empty() ? v : u;
-  std::vector<Index> tets, triangles;
-  for (const Index t : tets_at_[number_[known]])
-    if (const Tet& c = mesh_.tets[t];
-        std::find(c.begin(), c.end(), u) != c.end() && std::find(c.begin(), c.end(), v) != c.end())
-      tets.push_back(t);
-  if (tets.empty()) return;
-  for (const Index t : triangles_at_[number_[u]])
-    if (const Triangle& c = mesh_.interfaces[t].ids; std::find(c.begin(), c.end(), v) != c.end())
-      triangles.push_back(t);
-  const auto middle = static_cast<Index>(mesh_.points.size());
-  const double s = std::clamp(crossing.share, Labelling::min_split, 1 - Labelling::min_split);
-  mesh_.points.push_back(mesh_.points[u] + s * (mesh_.points[v] - mesh_.points[u]));
-  const auto number = static_cast<Index>(points_.size());
-  number_.push_back(number);
-  points_.push_back(middle);
-  std::set<std::size_t> sheets;
-  for (const Index t : triangles)
-    if (const auto sheet = surface_.sheet_of(mesh_.interfaces[t])) sheets.insert(*sheet);
-  labels_.push_back(sheets.size() > 1 ? junction_label(mesh_.points[middle], sheets) : crossing.label());
-  triangles_at_.emplace_back();
-  tets_at_.emplace_back();
-  // Each tet keeps u; a new tet takes v.
-  for (const Index t : tets) {
-    const auto added = static_cast<Index>(mesh_.tets.size());
-    Tet second = mesh_.tets[t];
-    std::replace(second.begin(), second.end(), u, middle);
-    std::replace(mesh_.tets[t].begin(), mesh_.tets[t].end(), v, middle);
-    mesh_.tets.push_back(second);
-    mesh_.materials.push_back(mesh_.materials[t]);
-    for (const Index p : second) {
-      if (number_[p] == no_index) continue;
-      std::vector<Index>& at = tets_at_[number_[p]];
-      if (p == v) {
-        if (!at.empty()) std::replace(at.begin(), at.end(), t, added);
-      } else if (p == middle) {
-        at.push_back(t);
-        at.push_back(added);
-      } else if (!at.empty()) {
-        at.push_back(added);
-      }
-    }
-  }
-  for (const Index t : triangles) {
-    const auto added = static_cast<Index>(mesh_.interfaces.size());
-    InterfaceTriangle second = mesh_.interfaces[t];
-    std::replace(second.ids.begin(), second.ids.end(), u, middle);
-    Triangle& first = mesh_.interfaces[t].ids;
-    std::replace(first.begin(), first.end(), v, middle);
-    mesh_.interfaces.push_back(second);
-    std::replace(triangles_at_[number_[v]].begin(), triangles_at_[number_[v]].end(), t, added);
-    triangles_at_[number].push_back(t);
-    triangles_at_[number].push_back(added);
-    for (const Index p : second.ids)
-      if (p != v && p != middle) triangles_at_[number_[p]].push_back(added);
   }
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <compare>
 #include <cstdint>
+#include <limits>
 #include <set>
 #include <vector>
 
@@ -92,11 +93,14 @@ class CreaseLabels {
   void snap_points();
   void resolve_rest();
   void dissolve_islands();
+  /// The sheet of an edge inside a region.
+  static constexpr std::size_t no_sheet = std::numeric_limits<std::size_t>::max();
   /// An edge of faces on one sheet.
   struct SheetEdge {
     Index u, v;
     std::size_t sheet;
     auto operator<=>(const SheetEdge&) const = default;
+    bool same_ends(const SheetEdge& o) const { return u == o.u && v == o.v; }
   };
   PatchSet on_sheet(const PatchSet& patches, std::size_t sheet) const;
   std::set<std::size_t> sheets_at(Index number) const;
@@ -105,7 +109,10 @@ class CreaseLabels {
   std::vector<SheetEdge> crossing_edges() const;
   std::optional<Crossing> find_crossing(const SheetEdge& edge) const;
   bool may_snap(Index point, const PatchSet& patches) const;
-  void split(const Crossing& crossing);
+  std::vector<SheetEdge> find_chords() const;
+  void split_chords(const std::vector<SheetEdge>& chords);
+  FeatureLabel patch_label(const Vec3& p, std::size_t sheet, const Vec3* normal) const;
+  void split(Index u, Index v, double share, const FeatureLabel& label);
   void track(const std::vector<SheetEdge>& edges);
   template <class Visit>
   void for_neighbours(Index number, const Visit& visit) const;
@@ -120,5 +127,12 @@ class CreaseLabels {
   std::vector<std::vector<Index>> triangles_at_;  ///< by number: indices into mesh_.interfaces
   std::vector<std::vector<Index>> tets_at_;       ///< by number: incident tets, for tracked points only
 };
+
+template <class Visit>
+void CreaseLabels::for_neighbours(Index number, const Visit& visit) const {
+  for (const Index t : triangles_at_[number])
+    for (const Index p : mesh_.interfaces[t].ids)
+      if (p != points_[number]) visit(p);
+}
 
 }  // namespace tetwright

@@ -121,6 +121,13 @@ struct CutTuning {
     /// Quality that tets must keep in each pass, in multiples of tangent_of_bad_tet: early passes favour
     /// shapes, later ones exact creases.
     static constexpr double pass_floors[] = {1, 1, 0.5, 0.5, 0.2, 0.2, 0.05, 0.05};
+    /// Further passes, with the last of these floors, where regions meet: there many points wait for each
+    /// other.
+    static constexpr std::size_t junction_passes = 4;
+    /// Points of a junction whose targets are closer than this share of the distance between their
+    /// neighbours' get others, and the max number of rounds over all points.
+    static constexpr double min_junction_share = 0.15;
+    static constexpr int unfolding_rounds = 20;
     /// Thickened walls move back as long as tets keep this quality (0.02 sr); otherwise they are reported.
     static constexpr double wall_floor = 0.2;
     /// Steps tried to make room, in mean edges at the point, and number of sweeps over all points.

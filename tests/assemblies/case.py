@@ -19,7 +19,7 @@ class Tolerance:
     crease: float
 
 
-FLAT = Tolerance(area=1e-3, volume=1e-3, distance=1e-3, crease=1e-3)
+FLAT = Tolerance(area=1e-3, volume=1e-3, distance=1e-3, crease=1e-6)
 # A few thousand tets have chords on round surfaces: 30 around a cylinder lose 0.7 % of its volume and 0.3 % of the
 # diagonal.
 ROUND = Tolerance(area=0.02, volume=0.02, distance=0.01, crease=0.005)

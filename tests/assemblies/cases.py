@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Solids that share faces, cross, touch or nearly fit."""
+import dataclasses
+
 import numpy as np
 
 import shapes as sh
@@ -17,7 +19,9 @@ def two_cubes(first, second, shift=0.0):
     size = sf.diagonal((partition.points, partition.triangles))
     points, triangles = second
     points = points + [1 + shift * size, 0, 0]
-    return of_partition(partition, [Input("first", first), Input("second", (points, triangles))])
+    # Either cube may give way by the whole gap, which is a larger share of a cube's diagonal than of both.
+    tolerance = dataclasses.replace(FLAT, crease=max(FLAT.crease, 1.5 * abs(shift)))
+    return of_partition(partition, [Input("first", first), Input("second", (points, triangles))], tolerance)
 
 
 def cube(counts, other_diagonals=False):

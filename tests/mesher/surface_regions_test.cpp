@@ -284,7 +284,7 @@ TEST(SurfaceRegions, ContactOfTurnedBodiesIsOnePiece) {
       points.insert(t.ids[k]);
     }
   }
-  EXPECT_NEAR(contact, 1, 1e-3);
+  EXPECT_NEAR(contact, 1, 1e-9);
   // A disc has the Euler characteristic 1.
   EXPECT_EQ(static_cast<int>(points.size()) - static_cast<int>(edges.size()) + static_cast<int>(faces), 1);
   for (const Tet& t : dense.mesh.tets) {
@@ -292,7 +292,7 @@ TEST(SurfaceRegions, ContactOfTurnedBodiesIsOnePiece) {
     volume +=
         (dense.mesh.points[t[1]] - a).cross(dense.mesh.points[t[2]] - a).dot(dense.mesh.points[t[3]] - a) / 6;
   }
-  EXPECT_NEAR(volume, 2, 1e-4);
+  EXPECT_NEAR(volume, 2, 1e-9);
 }
 
 TEST(SurfaceRegions, BodiesThatCrossAreNamedOrRefused) {
