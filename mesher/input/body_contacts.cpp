@@ -89,11 +89,15 @@ void add_overlap(const BodyOverlap& overlap, OverlapRule rule, MesherInput& inpu
 
 }  // namespace
 
-void join_bodies(MesherInput& input, const ContactOptions& options, Progress* progress) {
-  const double diagonal = (input.high - input.low).norm();
+double contact_tolerance(const ContactOptions& options, double diagonal) {
   const double tolerance = options.tolerance.value_or(options.relative_tolerance * diagonal);
   if (!(tolerance > 0 && std::isfinite(tolerance)))
     throw UsageError("the contact tolerance must be above 0, not " + short_number(tolerance));
+  return tolerance;
+}
+
+void join_bodies(MesherInput& input, const ContactOptions& options, Progress* progress) {
+  const double tolerance = contact_tolerance(options, (input.high - input.low).norm());
   if (input.bodies.size() < 2 || !boxes_meet(input, tolerance)) return;
   const auto not_joined = [&](const std::string& file, const std::string& why, const Vec3& place) {
     input.findings.push_back({.code = DiagnosticCode::bodies_not_joined,

@@ -6,6 +6,11 @@
 
 namespace tetwright {
 
+/// The distance up to which surfaces are in contact, input units.
+/// \param diagonal of the bounding box of all surfaces, input units
+/// \throws UsageError if it is not above 0
+double contact_tolerance(const ContactOptions& options, double diagonal);
+
 /// Joins closed bodies that meet: sets MesherInput::complex, contacts and overlaps, and replaces the surfaces
 /// of the bodies by what they are in the complex. Nothing changes if no two surfaces come closer than the
 /// tolerance.

@@ -9,6 +9,7 @@
 
 #include "common/geometry/measurable.h"
 #include "common/message_text.h"
+#include "mesher/input/body_builder.h"
 #include "mesher/input/body_contacts.h"
 #include "mesher/input/qualified_names.h"
 #include "mesher/tuning/input_tuning.h"
@@ -80,27 +81,6 @@ std::vector<MesherInput::Group> measure_groups(const std::vector<MaterialSurface
   return groups;
 }
 
-/// Repairs the surfaces one by one and appends each as a body, followed by its nested components.
-void add_bodies(std::vector<MaterialSurface> surfaces, std::set<MaterialTag> tags, NestedRule nested,
-                MesherInput& input) {
-  MaterialTag next_tag = 1;
-  for (MaterialSurface& s : surfaces) {
-    SurfaceRepair repaired = repair_surface(s.surface, s.file, nested);
-    const std::vector<SurfaceRegion> groups = std::move(s.surface.groups);
-    s.surface = {};
-    for (Diagnostic& f : repaired.findings) {
-      f.file = s.file;
-      input.findings.push_back(std::move(f));
-    }
-    input.bodies.push_back({s.name, s.tag, s.file, std::move(repaired.surface), groups});
-    for (std::size_t k = 0; k < repaired.nested.size(); ++k) {
-      while (!tags.insert(next_tag).second) ++next_tag;
-      input.bodies.push_back(
-          {s.name + "_" + std::to_string(k + 1), next_tag, s.file, std::move(repaired.nested[k]), groups});
-    }
-  }
-}
-
 void find_bounding_box(MesherInput& input) {
   input.low = input.bodies[0].surface.low;
   input.high = input.bodies[0].surface.high;
@@ -138,13 +118,16 @@ double largest_coordinate(const MesherInput& input) {
 }
 
 MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers,
-                              NestedRule nested, const ContactOptions& contact, Progress* progress) {
+                              NestedRule nested, const ContactOptions& contact, const RegionOptions& regions,
+                              Progress* progress) {
   if (surfaces.empty()) throw UsageError("there is no surface to mesh");
   MesherInput input;
   name_groups(surfaces, input.findings);
   input.groups = measure_groups(surfaces);
   std::set<MaterialTag> tags = tags_in_use(surfaces, layers);
-  add_bodies(std::move(surfaces), std::move(tags), nested, input);
+  BodyBuilder builder(input, std::move(tags), contact, progress);
+  builder.add(std::move(surfaces), nested, regions.rule);
+  builder.name(regions.seeds);
   input.layers = std::move(layers);
   find_bounding_box(input);
   validate_materials(input);

@@ -26,6 +26,16 @@ struct InputTuning {
     static constexpr std::size_t max_plain_queries = 16;
   };
 
+  /// Cells between the inner walls of a surface.
+  struct Cells {
+    /// Smaller cells, as a share of the volume of all, are folds of the surface and join a neighbour: 1 % of
+    /// the size of a body is about one cell of a dense mesh.
+    static constexpr double min_share = 1e-6;
+    /// Relative difference below which volumes are equal, and the step of coordinates, in diagonals, at which
+    /// lowest points are compared: the rounding of coordinates written with six digits.
+    static constexpr double equal = 1e-6;
+  };
+
   /// Max number of labels named in messages: enough to recognise a table of labels, few enough to read.
   struct Messages {
     static constexpr std::size_t max_listed_labels = 30;  ///< in one message

@@ -211,6 +211,21 @@ void add_material_options(CLI::App& app, CommandLine& c) {
       app, "--on-overlap", c.options.bodies.overlap,
       {{"later", OverlapRule::later}, {"error", OverlapRule::error}},
       "Give a volume that two crossing bodies claim to: later (the later one), or refuse it: error");
+  add_rule<RegionRule>(
+      app, "--regions", c.options.bodies.regions.rule,
+      {{"cells", RegionRule::cells}, {"outer", RegionRule::outer}},
+      "Inner walls of a surface divide it into materials NAME_1, NAME_2 ... (by volume): cells, or are left "
+      "out: outer");
+  app.add_option_function<std::vector<std::string>>(
+         "--region",
+         [&c](const std::vector<std::string>& all) {
+           for (const std::string& text : all)
+             c.options.bodies.regions.seeds.push_back(parse_seed("--region", text));
+         },
+         "Call the cell between inner walls that contains this point NAME; repeatable")
+      ->expected(1)
+      ->type_name("NAME@X,Y,Z")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
 void add_strict(CLI::App& app, CommandLine& c) {

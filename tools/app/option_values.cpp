@@ -31,6 +31,23 @@ NamedValue split_named(const std::string& text, const char* option, const char* 
   return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
+RegionSeed parse_seed(const std::string& option, const std::string& text) {
+  constexpr Range finite{-max_number, max_number, true, "a number"};
+  const std::size_t at = text.rfind('@');
+  RegionSeed seed{text.substr(0, at), Vec3::Zero()};
+  std::vector<std::string> numbers{""};
+  for (const char c : at == std::string::npos ? "" : text.substr(at + 1))
+    if (c == ',')
+      numbers.emplace_back();
+    else
+      numbers.back() += c;
+  if (seed.name.empty() || numbers.size() != 3)
+    throw CLI::ValidationError(option, "'" + text + "' is not NAME@X,Y,Z");
+  for (int k = 0; k < 3; ++k)
+    seed.point[k] = parse_number(option, numbers[static_cast<std::size_t>(k)], finite);
+  return seed;
+}
+
 std::string comma_separated(const std::vector<std::string>& names) {
   std::string out;
   for (const std::string& n : names) out += (out.empty() ? "" : ", ") + n;

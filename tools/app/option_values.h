@@ -46,6 +46,11 @@ std::uint64_t parse_whole_number(const std::string& option, const std::string& t
 /// \param value how messages refer to VALUE
 NamedValue split_named(const std::string& text, const char* option, const char* value);
 
+/// Parses NAME@X,Y,Z.
+///
+/// \throws CLI::ValidationError unless there are a name and three finite numbers
+RegionSeed parse_seed(const std::string& option, const std::string& text);
+
 /// Formats a default value for the help, such as "0.05".
 std::string short_text(double value);
 

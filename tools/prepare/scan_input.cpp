@@ -79,6 +79,10 @@ bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
   if (bodies.contact_tolerance || bodies.overlap != OverlapRule::later)
     throw UsageError(
         "--contact-tolerance and --on-overlap are for surfaces, and the input is a segmented volume");
+  if (bodies.regions.rule != RegionRule::cells || !bodies.regions.seeds.empty())
+    throw UsageError(
+        "--regions and --region are for surfaces, and the input is a segmented volume; --label-names names "
+        "its labels");
   return true;
 }
 
@@ -214,8 +218,8 @@ MesherInput read_surfaces(std::vector<Input>& inputs, PrepareRun& run) {
     contact.relative_tolerance = options.contact_tolerance->value / 100;
   else if (options.contact_tolerance)
     contact.tolerance = options.contact_tolerance->value;
-  MesherInput input =
-      make_mesher_input(std::move(surfaces), std::move(layers), options.nested, contact, &run.progress);
+  MesherInput input = make_mesher_input(std::move(surfaces), std::move(layers), options.nested, contact,
+                                        options.regions, &run.progress);
   std::vector<Diagnostic>& all = run.report.diagnostics;
   all.insert(all.end(), input.findings.begin(), input.findings.end());
   run.report.patches = patches_of_input(input);

@@ -70,6 +70,7 @@ enum class DiagnosticCode : std::uint8_t {
   components_alternate,
   cavities_filled,
   components_separated,
+  cells_separated,
   names_qualified,
   bodies_overlap,
   bodies_not_joined,

@@ -149,6 +149,24 @@ struct ContactOptions {
   OverlapRule overlap = OverlapRule::later;
 };
 
+/// The materials of a surface whose inner walls divide it into cells.
+enum class RegionRule : std::uint8_t {
+  cells,  ///< each cell is a material
+  outer   ///< inner walls are left out
+};
+
+/// A name for the region that contains a point.
+struct RegionSeed {
+  std::string name;
+  Vec3 point;  ///< input units, off the surfaces
+};
+
+/// How the cells of a surface with inner walls become materials.
+struct RegionOptions {
+  RegionRule rule = RegionRule::cells;
+  std::vector<RegionSeed> seeds = {};
+};
+
 /// Faces that two bodies share.
 struct ContactReport {
   std::string first, second;    ///< materials, in the order of the bodies
@@ -203,8 +221,14 @@ enum class SurfaceFlaw : std::uint8_t {
 };
 
 /// Validates and repairs the surfaces, see repair_surface(). With NestedRule::material every enclosed
-/// component becomes a body directly after its encloser, with the smallest free tag from 1 up. If more than
-/// one surface has groups of triangles, names that occur in several surfaces are qualified (see
+/// component becomes a body directly after its encloser, with the smallest free tag from 1 up.
+///
+/// A surface with *inner walls* has single sheets that are joined to others at edges of three or more
+/// triangles. With RegionRule::cells each cell between its sheets becomes a body, called by a seed in it, by
+/// the group that is its whole outer boundary, or NAME_1, NAME_2 and so on by volume, largest first. A wall
+/// is part of both cells' surfaces. Closed shells that touch, cross or contain each other are no walls.
+///
+/// If more than one surface has groups of triangles, names that occur in several surfaces are qualified (see
 /// qualify_names()), and groups that have only a number are named after their surface.
 ///
 /// Closed bodies that meet are then joined (ContactOptions): their surfaces are cut along the curves in which
@@ -216,10 +240,10 @@ enum class SurfaceFlaw : std::uint8_t {
 ///   OverlapRule::error; for coordinates too large or a size too small for areas and
 ///   volumes in double precision
 /// \throws UsageError for no surface, two materials of one name or tag, a layer whose thickness is not above
-///   0, or more than 60,000 materials
+///   0, more than 60,000 materials, or a seed that is in no cell or whose cell another one names
 MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers = {},
                               NestedRule nested = NestedRule::automatic, const ContactOptions& contact = {},
-                              Progress* progress = nullptr);
+                              const RegionOptions& regions = {}, Progress* progress = nullptr);
 
 /// The longest side of the bounding box, input units.
 double longest_side(const MesherInput& input);

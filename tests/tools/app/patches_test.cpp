@@ -121,6 +121,31 @@ TEST(Patches, SolidsAreMaterials) {
   EXPECT_EQ(mesh.material_names, (std::map<MaterialTag, std::string>{{1, "bone"}, {2, "skin"}}));
 }
 
+TEST(Patches, CellsBetweenInnerWallsAreMaterials) {
+  const TemporaryFolder f;
+  // Both boxes have no lid at z = 1 but for the solid `wall`.
+  const std::string above = box(1, 2.5, "gas");
+  std::string open = above;
+  const std::size_t facet = above.find("facet"), second = above.find("facet normal", facet + 1),
+                    third = above.find("facet normal", second + 1);
+  open.erase(facet, third - facet);  // the two facets at z = 1
+  write(f / "tank.stl", box(0, 1, "bath", "wall") + open);
+  const std::string call = "mesh " + (f / "tank.stl") + " --resolution 16 -o " + (f / "a.msh");
+  const auto names = [&](const std::string& more) {
+    const Answer a = run(call + more);
+    EXPECT_EQ(a.status, 0) << a.err;
+    EXPECT_EQ(a.err.find("2 cells between the inner walls") != std::string::npos, !more.ends_with("outer"));
+    return read_tet_mesh(f / "a.msh").mesh.material_names;
+  };
+  EXPECT_EQ(names(""), (std::map<MaterialTag, std::string>{{1, "gas"}, {2, "bath"}}));
+  EXPECT_EQ(names(" --region air@0.5,0.5,2"), (std::map<MaterialTag, std::string>{{1, "air"}, {2, "bath"}}));
+  EXPECT_EQ(names(" --regions outer"), (std::map<MaterialTag, std::string>{{1, "tank"}}));
+  expect_refused(call + " --region air@3,3,3", 2, {"'air' at (3, 3, 3)", "no cell"});
+  expect_refused(call + " --region air@1,2", 2, {"air@1,2", "NAME@X,Y,Z"});
+  expect_refused(call + " --region air@1,2,x", 2, {"'x'"});
+  expect_refused(call + " --regions all", 2, {"'all'", "cells, outer"});
+}
+
 TEST(Patches, SolidsWithoutANameHaveNumbers) {
   const TemporaryFolder f;
   write(f / "a.stl", box(0, 1, "", " "));

@@ -290,6 +290,8 @@ TEST_F(Volumes, CallsThatDoNotFit) {
     expect_refused(both, 2, {"only input"});
   expect_refused(organs + " --layer skin=1", 2, {"--layer"});
   expect_refused(organs + " --nested cavity", 2, {"--nested"});
+  expect_refused(organs + " --regions outer", 2, {"--regions"});
+  expect_refused(organs + " --region a@1,2,3", 2, {"--region"});
   expect_refused(ball + " --labels 1", 2, {"--labels", "segmented volumes"});
   expect_refused(ball + " --min-voxels 4", 2, {"--min-voxels", "segmented volumes"});
   expect_refused(organs + " --labels 5-1", 2, {"5-1"});

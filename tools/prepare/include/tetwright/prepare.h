@@ -139,6 +139,7 @@ struct BodyOptions {
   /// Gaps and overlaps of different bodies up to this are contact. std::nullopt: 1e-5 of the diagonal.
   std::optional<Length> contact_tolerance;
   OverlapRule overlap = OverlapRule::later;
+  RegionOptions regions;  ///< of surfaces that inner walls divide
   /// True: each solid, group or label of a surface's triangles becomes a material of that name instead of a
   /// patch.
   bool split_solids = false;

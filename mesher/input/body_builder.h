@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "mesher/input/divided_surface.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/progress.h"
+
+namespace tetwright {
+
+/// Makes the bodies of an input from its surfaces.
+class BodyBuilder {
+ public:
+  /// \param input receives the bodies and findings
+  /// \param tags in use
+  /// \param progress may be null
+  BodyBuilder(MesherInput& input, std::set<MaterialTag> tags, const ContactOptions& contact,
+              Progress* progress)
+      : input_(input), tags_(std::move(tags)), contact_(contact), progress_(progress) {}
+
+  /// Repairs the surfaces one by one and appends each as a body, followed by its nested components; or each
+  /// of its cells, if inner walls divide it.
+  /// \throws InputError as repair_surface() does
+  /// \throws UsageError for a contact tolerance that is not above 0
+  /// \throws Interrupted
+  void add(std::vector<MaterialSurface> surfaces, NestedRule nested, RegionRule rule);
+
+  /// Renames the cells that contain the points.
+  /// \throws UsageError for a point that is in no cell, or in a cell that another seed names differently
+  void name(const std::vector<RegionSeed>& seeds);
+
+ private:
+  MaterialTag free_tag();
+  bool add_cells(const CleanedSurface& cleaned, const MaterialSurface& from, NestedRule nested,
+                 std::vector<Diagnostic>& findings);
+  void report_cells(const DividedSurface& divided, std::vector<Diagnostic>& findings) const;
+  std::string cell_name(const SurfaceCell& cell, std::size_t number, const MaterialSurface& from,
+                        std::set<std::string>& used) const;
+
+  MesherInput& input_;
+  std::set<MaterialTag> tags_;
+  const ContactOptions& contact_;
+  Progress* progress_;
+  MaterialTag next_tag_ = 1;
+  std::set<std::size_t> cells_;  ///< bodies that are cells
+};
+
+}  // namespace tetwright
