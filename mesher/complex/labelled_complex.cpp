@@ -35,14 +35,15 @@ struct Use {
 class ComplexBuilder {
  public:
   ComplexBuilder(const ImprintedSurfaces& imprinted, const SurfaceSoup& soup, std::size_t bodies,
-                 double tolerance)
-      : imprinted_(imprinted), soup_(soup), bodies_(bodies), tolerance_(tolerance) {}
+                 double tolerance, OverlapRule rule)
+      : imprinted_(imprinted), soup_(soup), bodies_(bodies), tolerance_(tolerance), rule_(rule) {}
 
   ComplexResult build() {
     weld();
     find_windings();
-    label_cells();
+    measure_cells();
     find_overlaps();
+    label_cells();
     dissolve_thin_cells();
     assemble();
     return std::move(result_);
@@ -152,11 +153,7 @@ class ComplexBuilder {
     }
   }
 
-  void label_cells() {
-    labels_.assign(cells_.count, outside_region);
-    for (Index c = 0; c < cells_.count; ++c)
-      for (std::size_t b = 0; b < bodies_; ++b)
-        if (windings_[c][b] > 0) labels_[c] = static_cast<RegionIndex>(b + 1);
+  void measure_cells() {
     volumes_.assign(cells_.count, 0);
     areas_.assign(cells_.count, 0);
     places_.assign(cells_.count, Vec3::Zero());
@@ -203,6 +200,38 @@ class ComplexBuilder {
     }
   }
 
+  bool cross(std::size_t a, std::size_t b) const {
+    return std::any_of(result_.overlaps.begin(), result_.overlaps.end(),
+                       [&](const BodyOverlap& o) { return o.first == a && o.second == b; });
+  }
+
+  /// The bodies that have a cell, ascending: more than one only with OverlapRule::material.
+  std::vector<std::size_t> owners(Index cell) const {
+    std::vector<std::size_t> owners;
+    for (std::size_t b = 0; b < bodies_; ++b) {
+      if (windings_[cell][b] <= 0) continue;
+      const auto crosses = [&](std::size_t a) { return cross(a, b); };
+      if (rule_ == OverlapRule::first && std::any_of(owners.begin(), owners.end(), crosses)) continue;
+      std::erase_if(owners, [&](std::size_t a) { return rule_ != OverlapRule::material || !crosses(a); });
+      owners.push_back(b);
+    }
+    return owners;
+  }
+
+  void label_cells() {
+    labels_.assign(cells_.count, outside_region);
+    std::map<std::vector<std::size_t>, RegionIndex> common;
+    for (Index c = 0; c < cells_.count; ++c) {
+      const std::vector<std::size_t> owners = this->owners(c);
+      if (owners.size() == 1) labels_[c] = static_cast<RegionIndex>(owners[0] + 1);
+      if (owners.size() < 2) continue;
+      const auto [known, is_new] =
+          common.try_emplace(owners, static_cast<RegionIndex>(bodies_ + 1 + result_.common.size()));
+      if (is_new) result_.common.push_back(owners);
+      labels_[c] = known->second;
+    }
+  }
+
   /// Gives cells that are thinner than the tolerance to the neighbour with the largest common area.
   void dissolve_thin_cells() {
     std::map<Index, std::map<RegionIndex, double>> beside;
@@ -224,23 +253,44 @@ class ComplexBuilder {
     }
   }
 
+  /// Whether a body contains a cell that an earlier one keeps.
+  bool loses(std::size_t body, Index cell) const {
+    if (rule_ != OverlapRule::first || windings_[cell][body] <= 0) return false;
+    for (std::size_t a = 0; a < body; ++a)
+      if (windings_[cell][a] > 0 && cross(a, body)) return true;
+    return false;
+  }
+
   void assemble() {
     LabelledComplex& out = result_.complex;
-    result_.body_triangles.resize(bodies_);
-    result_.body_sources.resize(bodies_);
-    result_.lost.assign(bodies_, 1);
+    const std::size_t surfaces = bodies_ + result_.common.size();
+    result_.body_triangles.resize(surfaces);
+    result_.body_sources.resize(surfaces);
+    result_.lost.assign(surfaces, 1);
+    const auto add_triangle = [&](std::size_t body, Triangle ids, bool turned, Index source) {
+      if (turned) std::swap(ids[1], ids[2]);
+      result_.body_triangles[body].push_back(ids);
+      result_.body_sources[body].push_back(source);
+    };
     out.points = imprinted_.points;
     out.starts_.push_back(0);
     for (Index t = 0; t < welded_.size(); ++t) {
       const std::size_t first = out.sources_.size();
+      const auto [back_cell, front_cell] = cells_.sides[t];
+      const RegionIndex behind = labels_[back_cell], front = labels_[front_cell];
       for (const Use& u : uses(t)) {
-        Triangle ids = welded_[t].ids;
-        if (u.turned) std::swap(ids[1], ids[2]);
+        if (loses(u.body, back_cell) && loses(u.body, front_cell)) continue;
         out.sources_.push_back({u.body, static_cast<Index>(result_.body_triangles[u.body].size()), u.turned});
-        result_.body_triangles[u.body].push_back(ids);
-        result_.body_sources[u.body].push_back(u.source);
+        add_triangle(u.body, welded_[t].ids, u.turned, u.source);
       }
-      const RegionIndex behind = labels_[cells_.sides[t][0]], front = labels_[cells_.sides[t][1]];
+      // What an earlier body keeps bounds the later one, too.
+      for (std::size_t b = 0; b < bodies_ && rule_ == OverlapRule::first; ++b)
+        if (windings_[back_cell][b] > 0 && windings_[front_cell][b] > 0 &&
+            loses(b, back_cell) != loses(b, front_cell))
+          add_triangle(b, welded_[t].ids, loses(b, back_cell), no_index);
+      for (std::size_t b = bodies_; b < surfaces; ++b)
+        if (const auto own = static_cast<RegionIndex>(b + 1); (behind == own) != (front == own))
+          add_triangle(b, welded_[t].ids, front == own, no_index);
       if (behind == front) {
         out.sources_.resize(first);
         continue;
@@ -264,6 +314,19 @@ class ComplexBuilder {
     }
   }
 
+  /// Measures how far a body's surface has moved to a contact: outwards over a gap, inwards over an overlap.
+  void measure_gap(const LabelledComplex::Source& source, const Triangle& face, BodyContact& contact) const {
+    const Triangle& original = soup_.triangles[result_.body_sources[source.body][source.triangle]];
+    const Vec3& corner = soup_.points[original[0]];
+    const Vec3 normal = (soup_.points[original[1]] - corner).cross(soup_.points[original[2]] - corner);
+    for (const Index p : face) {
+      const double moved = normal.dot(at(p) - corner) / normal.norm();
+      if (std::abs(moved) < ComplexTuning::Contact::min_gap * tolerance_) continue;
+      contact.largest_gap = std::max(contact.largest_gap, moved);
+      contact.largest_overlap = std::max(contact.largest_overlap, -moved);
+    }
+  }
+
   void find_contacts() {
     const LabelledComplex& complex = result_.complex;
     std::map<std::pair<std::size_t, std::size_t>, std::vector<Index>> faces;
@@ -278,8 +341,7 @@ class ComplexBuilder {
       for (const Index f : list) {
         triangles.push_back(complex.faces[f].ids);
         contact.area += area_vector(triangles.back()).norm();
-        for (const Index p : triangles.back())
-          contact.largest_gap = std::max(contact.largest_gap, imprinted_.gap[p]);
+        for (const LabelledComplex::Source& s : complex.sources(f)) measure_gap(s, triangles.back(), contact);
       }
       DisjointSets sets(list.size());
       const std::vector<EdgeUse> edges = edge_uses(triangles, {});
@@ -294,6 +356,7 @@ class ComplexBuilder {
   const SurfaceSoup& soup_;
   std::size_t bodies_;
   double tolerance_;
+  OverlapRule rule_;
   ComplexResult result_;
   std::vector<Welded> welded_;
   std::vector<Use> uses_;
@@ -305,8 +368,8 @@ class ComplexBuilder {
 };
 
 ComplexResult build_complex(const ImprintedSurfaces& imprinted, const SurfaceSoup& soup, std::size_t bodies,
-                            double tolerance) {
-  return ComplexBuilder(imprinted, soup, bodies, tolerance).build();
+                            double tolerance, OverlapRule rule) {
+  return ComplexBuilder(imprinted, soup, bodies, tolerance, rule).build();
 }
 
 }  // namespace tetwright

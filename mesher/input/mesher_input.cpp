@@ -12,6 +12,7 @@
 #include "mesher/input/body_builder.h"
 #include "mesher/input/body_contacts.h"
 #include "mesher/input/qualified_names.h"
+#include "mesher/input/self_crossings.h"
 #include "mesher/tuning/input_tuning.h"
 #include "tetwright/error.h"
 
@@ -132,6 +133,8 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
   find_bounding_box(input);
   validate_materials(input);
   require_measurable(longest_side(input), largest_coordinate(input), "surface", input.bodies[0].file);
+  const double tolerance = contact_tolerance(contact, (input.high - input.low).norm());
+  for (MesherInput::Body& body : input.bodies) resolve_self_crossings(body, tolerance, progress);
   join_bodies(input, contact, progress);
   return input;
 }

@@ -297,6 +297,29 @@ nlohmann::json patches_json(const std::vector<PatchComparison>& all) {
   return j;
 }
 
+nlohmann::json contacts_json(const std::vector<ContactReport>& all) {
+  nlohmann::json j = nlohmann::json::array();
+  for (const ContactReport& c : all)
+    j.push_back({{"first", c.first},
+                 {"second", c.second},
+                 {"area", c.area},
+                 {"pieces", c.pieces},
+                 {"largest_gap", c.largest_gap},
+                 {"largest_overlap", c.largest_overlap}});
+  return j;
+}
+
+nlohmann::json overlaps_json(const std::vector<OverlapReport>& all) {
+  nlohmann::json j = nlohmann::json::array();
+  for (const OverlapReport& o : all)
+    j.push_back({{"first", o.first},
+                 {"second", o.second},
+                 {"volume", o.volume},
+                 {"owner", o.owner},
+                 {"place", place_json(o.place)}});
+  return j;
+}
+
 /// Adds how the dense mesh was made to its statistics.
 void add_mesher_json(const MesherReport& m, nlohmann::json& dense) {
   dense["cell_size"] = m.cell_size;
@@ -389,6 +412,8 @@ std::string stats_json(const CommandRun& ended) {
   if (run.mesher) j["fidelity"] = solids_json(run.solids);
   if (!run.features.empty()) j["features"] = features_json(run.features);
   if (!run.patches.empty()) j["patches"] = patches_json(run.patches);
+  if (!run.contacts.empty()) j["contacts"] = contacts_json(run.contacts);
+  if (!run.overlaps.empty()) j["overlaps"] = overlaps_json(run.overlaps);
   if (run.deviation)
     j["tolerance"] = {{"distance", run.tolerance},
                       {"held", run.deviation->upper() <= run.tolerance && run.lost_area() == 0},
