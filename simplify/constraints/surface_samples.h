@@ -19,8 +19,8 @@ namespace tetwright {
 /// The surface that a mesh represents, as triangles. Working coordinates.
 class InputSurface {
  public:
-  /// Uses the given surface, and the parts of the mesh's own boundary and interfaces that are far from it
-  /// (caps of holes, layers, the box of a meshed outside). Without a given surface, uses the mesh's whole
+  /// Uses the given surface, the sheets of the mesh, and the parts of its own boundary and interfaces that are
+  /// far from the given surface (caps of holes, layers, the box of a meshed outside). Without a given surface, uses the mesh's whole
   /// boundary and interfaces.
   ///
   /// \param mesh before any operation.
@@ -31,6 +31,7 @@ class InputSurface {
   struct Kind {
     RegionId low = outside_id, high = outside_id;
     PatchId patch = 0;
+    bool is_sheet() const { return low == high && low != outside_id; }
     bool operator==(const Kind&) const = default;
   };
   static Kind kind_of(RegionId inside, RegionId across, PatchId patch);
