@@ -99,8 +99,9 @@ constexpr std::array failure_table = std::to_array<DiagnosticKind>({
      .severity = Severity::error,
      .title = "faces of sheets that are not inside a material",
      .message = "faces of sheets that are not between two tets of their material",
-     .cause = "A sheet is an inner face with one material on both sides; these faces belong to another mesh, lie "
-              "on the boundary or an interface, or are listed twice.",
+     .cause =
+         "A sheet is an inner face with one material on both sides; these faces belong to another mesh, lie "
+         "on the boundary or an interface, or are listed twice.",
      .remedy = "Save sheets and tets again from one mesh."},
     {.code = topology_differs,
      .name = "topology-differs",

@@ -52,7 +52,8 @@ SurfaceToFollow follow(const ReferenceSurface& reference) {
   SurfaceToFollow surface;
   surface.onto_patch = [&reference](const Vec3& p, const InterfacePatch& patch, double max_distance) {
     const auto& [pair, number] = patch;
-    if (pair.first == pair.second) return std::optional<Vec3>();  // a sheet, which the reference does not have
+    if (pair.first == pair.second)
+      return std::optional<Vec3>();  // a sheet, which the reference does not have
     return reference.has_patches() ? reference.onto_patch(p, pair.first, pair.second, number, max_distance)
                                    : reference.project(p, pair.first, pair.second, max_distance);
   };
@@ -147,9 +148,9 @@ CurvingReport curve_midside_nodes(const TetMesh& mesh, const SurfaceToFollow& su
     const Vec3& middle = nodes.points[node];
     const double reach = max_move * (mesh.points[edge[1]] - mesh.points[edge[0]]).norm();
     const auto& onto_curve = has_sheet(at) ? surface.onto_sheet_curve : surface.onto_crease;
-    const std::optional<Vec3> onto = is_smooth(at)  ? surface.onto_patch(middle, at.begin()->first, reach)
-                                     : onto_curve ? onto_curve(middle, reach)
-                                                  : std::nullopt;
+    const std::optional<Vec3> onto = is_smooth(at) ? surface.onto_patch(middle, at.begin()->first, reach)
+                                     : onto_curve  ? onto_curve(middle, reach)
+                                                   : std::nullopt;
     if (!onto || (*onto - middle).norm() > reach) continue;
     target[node] = *onto;
     share[node] = 0;

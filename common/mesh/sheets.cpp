@@ -150,9 +150,9 @@ std::vector<SheetStatistics> sheet_statistics(const TetMesh& mesh) {
     if (!t.is_sheet()) continue;
     const auto known = mesh.patch_groups.find({t.pair(), t.patch});
     const SurfaceRegion group = known == mesh.patch_groups.end() ? SurfaceRegion{} : known->second;
-    const std::string name = !group                ? pair_name(t.pair(), mesh.material_names)
+    const std::string name = !group               ? pair_name(t.pair(), mesh.material_names)
                              : group.name.empty() ? std::to_string(group.number)
-                                                   : group.name;
+                                                  : group.name;
     sheets[{group, name}].push_back(t.ids);
   }
   std::vector<SheetStatistics> out;

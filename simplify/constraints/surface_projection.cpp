@@ -43,7 +43,8 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
     : has_patches_(
           (!given || given->has_patches()) &&
           std::any_of(faces.begin(), faces.end(), [](const InterfaceFace& f) { return f.patch != 0; })),
-      has_sheets_(std::any_of(faces.begin(), faces.end(), [](const InterfaceFace& f) { return f.is_sheet(); })),
+      has_sheets_(
+          std::any_of(faces.begin(), faces.end(), [](const InterfaceFace& f) { return f.is_sheet(); })),
       given_patches_(has_patches_ && given),
       given_(given),
       mesh_(&mesh) {

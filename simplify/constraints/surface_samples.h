@@ -19,9 +19,9 @@ namespace tetwright {
 /// The surface that a mesh represents, as triangles. Working coordinates.
 class InputSurface {
  public:
-  /// Uses the given surface, the sheets of the mesh, and the parts of its own boundary and interfaces that are
-  /// far from the given surface (caps of holes, layers, the box of a meshed outside). Without a given surface, uses the mesh's whole
-  /// boundary and interfaces.
+  /// Uses the given surface, the sheets of the mesh, and the parts of its own boundary and interfaces that
+  /// are far from the given surface (caps of holes, layers, the box of a meshed outside). Without a given
+  /// surface, uses the mesh's whole boundary and interfaces.
   ///
   /// \param mesh before any operation.
   /// \param given triangles wound outwards, input units; may be null.

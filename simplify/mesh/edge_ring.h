@@ -22,8 +22,8 @@ struct EdgeRing {
   std::vector<RegionId> regions;  ///< of the tets
   /// By tet: whether the face (a, b, points[i]) of tets[i] is an interface triangle.
   std::vector<std::uint8_t> behind_interface;
-  float worst = 1;                ///< min quality of the tets
-  int interface_triangles = 0;    ///< interface triangles at the edge
+  float worst = 1;              ///< min quality of the tets
+  int interface_triangles = 0;  ///< interface triangles at the edge
 
   /// Walks around an edge of a tet.
   ///

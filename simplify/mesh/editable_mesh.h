@@ -185,9 +185,9 @@ class EditableMesh {
   void reserve_twice();
   /// Fraction of dead slots among the slots used so far.
   double dead_share() const;
-  /// The faces between two regions, outside included, and those of sheets, each once. Parallel; the order does not depend on the
-  /// number of threads. Patches of interface faces are those of the input, so they are valid only before the
-  /// first operation.
+  /// The faces between two regions, outside included, and those of sheets, each once. Parallel; the order
+  /// does not depend on the number of threads. Patches of interface faces are those of the input, so they are
+  /// valid only before the first operation.
   std::vector<InterfaceFace> interface_faces() const;
   /// The faces of sheets, without patches.
   ///

@@ -151,13 +151,13 @@ void MeshBuilder::take_sheets(const std::vector<InterfaceTriangle>& interfaces) 
     }
   if (sheets.empty()) return;
   const Triangle& left = sheets.begin()->first;
-  throw InputError(name_, 0,
-                   std::to_string(sheets.size()) +
-                       " faces of its sheets do not lie between two tets of their material, the first at " +
-                       place(mesh_.space_.to_input((mesh_.positions_[left[0]] + mesh_.positions_[left[1]] +
-                                                    mesh_.positions_[left[2]]) /
-                                                   3)) +
-                       "; `tetwright check` lists all of them");
+  throw InputError(
+      name_, 0,
+      std::to_string(sheets.size()) +
+          " faces of its sheets do not lie between two tets of their material, the first at " +
+          place(mesh_.space_.to_input(
+              (mesh_.positions_[left[0]] + mesh_.positions_[left[1]] + mesh_.positions_[left[2]]) / 3)) +
+          "; `tetwright check` lists all of them");
 }
 
 void MeshBuilder::freeze_sheet_corners() {

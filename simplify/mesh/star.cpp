@@ -219,8 +219,8 @@ Vec3 Star::oriented_area() {
     for (std::size_t i = 0; i < interface_triangles.size(); ++i)
       for (std::size_t j = 0; j < interface_triangles.size() && sides_[i] == 0; ++j) {
         const InterfaceTriangle &s = interface_triangles[i], &t = interface_triangles[j];
-        if (sides_[j] == 0 || !(s.first == t.first || s.first == t.second || s.second == t.first ||
-                               s.second == t.second))
+        if (sides_[j] == 0 ||
+            !(s.first == t.first || s.first == t.second || s.second == t.first || s.second == t.second))
           continue;
         // Equally oriented triangles traverse their common edge in opposite directions.
         sides_[i] = s.first == t.first || s.second == t.second ? -sides_[j] : sides_[j];

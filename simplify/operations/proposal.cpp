@@ -176,7 +176,8 @@ void Proposal::claim_cavity(const EditableMesh& mesh) {
              (mesh.neighbour(across, back) != t || sorted_face(mesh.points(across), back).vertices != key))
         ++back;
       TETWRIGHT_CHECK(back < 4);  // links are mutual
-      hull.push_back({key, across, static_cast<std::uint8_t>(back), mesh.region(across), 0, link.is_interface()});
+      hull.push_back(
+          {key, across, static_cast<std::uint8_t>(back), mesh.region(across), 0, link.is_interface()});
     }
   }
   read_set_size = write_set.size();

@@ -27,7 +27,8 @@ Engine::Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, P
   rules.error.gamma = options.gamma;
   // Patches and sheets must be preserved from the first collapse on. Without them, only improvement needs the
   // projection.
-  if (projection_.has_patches() || projection_.has_sheets()) rules.project_onto(projection_, mesh_.diagonal());
+  if (projection_.has_patches() || projection_.has_sheets())
+    rules.project_onto(projection_, mesh_.diagonal());
 }
 
 TetMesh Engine::take() && {

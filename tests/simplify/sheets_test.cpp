@@ -223,7 +223,9 @@ TEST(Sheets, CurvedSheetsStayOnTheirOwnSurfaceBesideAReference) {
   mesh.interfaces = find_interfaces(mesh);
   add_sheet(mesh, {2, 6, {2, 2, 0}, {10, 10, 0}}, 0, "dome");
   // Bend the whole box.
-  const auto height = [](const Vec3& p) { return 0.02 * ((p.x() - 6) * (p.x() - 6) + (p.y() - 6) * (p.y() - 6)); };
+  const auto height = [](const Vec3& p) {
+    return 0.02 * ((p.x() - 6) * (p.x() - 6) + (p.y() - 6) * (p.y() - 6));
+  };
   for (Vec3& p : mesh.points) p.z() -= height(p);
   const FarPlane reference;
   SimplifyOptions options = to(3000);

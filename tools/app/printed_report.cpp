@@ -41,8 +41,8 @@ std::string volume_line(const VolumeReport& v) {
 /// Line such as "sheet 'baffle': 120 triangles, area 36, 1 piece; border of length 24 in 1 piece".
 std::string sheet_line(const SheetStatistics& s) {
   const auto pieces = [](std::size_t n) { return text("%zu piece", n) + (n == 1 ? "" : "s"); };
-  return printable("sheet " + in_quotes(s.name) + ": " + text("%zu triangles, area %.6g, ", s.triangles, s.area) +
-                   pieces(s.pieces) + "; " +
+  return printable("sheet " + in_quotes(s.name) + ": " +
+                   text("%zu triangles, area %.6g, ", s.triangles, s.area) + pieces(s.pieces) + "; " +
                    (s.border_pieces == 0 ? "closed"
                                          : "border of length " + text("%.6g", s.border_length) + " in " +
                                                pieces(s.border_pieces)));

@@ -162,18 +162,18 @@ nlohmann::json mesh_json(const MeshStatistics& m, const std::map<MaterialTag, st
         {{"materials", pair_json(pair)}, {"triangles", interface.triangles}, {"area", interface.area}});
   }
   nlohmann::json j = {{"tets", m.tets},
-          {"points", m.points},
-          {"interfaces", interfaces},
-          {"junction_edges", m.junction_edges},
-          {"materials", materials},
-          {"volume", m.volume},
-          {"min_solid_angle", m.min_solid_angle},
-          {"mean_solid_angle", m.mean_solid_angle},
-          {"threshold", threshold},
-          {"percent_below_threshold", m.below_percent},
-          {"min_dihedral", m.min_dihedral},
-          {"max_dihedral", m.max_dihedral},
-          {"histogram", m.histogram.counts}};
+                      {"points", m.points},
+                      {"interfaces", interfaces},
+                      {"junction_edges", m.junction_edges},
+                      {"materials", materials},
+                      {"volume", m.volume},
+                      {"min_solid_angle", m.min_solid_angle},
+                      {"mean_solid_angle", m.mean_solid_angle},
+                      {"threshold", threshold},
+                      {"percent_below_threshold", m.below_percent},
+                      {"min_dihedral", m.min_dihedral},
+                      {"max_dihedral", m.max_dihedral},
+                      {"histogram", m.histogram.counts}};
   for (const SheetStatistics& s : m.sheets)
     j["sheets"].push_back({{"name", s.name},
                            {"triangles", s.triangles},

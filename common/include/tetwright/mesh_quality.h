@@ -326,7 +326,7 @@ struct Topology {
   std::map<MaterialTag, Solid> materials;
   std::map<Pair, Surface> interfaces;
   std::map<std::string, Surface> sheets;  ///< by SheetStatistics::name
-  std::optional<Count> touching_fans;  ///< surplus fans of boundary and interface triangles
+  std::optional<Count> touching_fans;     ///< surplus fans of boundary and interface triangles
   std::optional<Curves> junction_curves;
 
   bool operator==(const Topology&) const = default;

@@ -9,16 +9,16 @@
 
 namespace tetwright {
 
-/// Sheets are inner faces of a mesh with the same material on both sides: see InterfaceTriangle. The tets do not
-/// contain them, so find_interfaces() does not find them.
+/// Sheets are inner faces of a mesh with the same material on both sides: see InterfaceTriangle. The tets do
+/// not contain them, so find_interfaces() does not find them.
 
 /// The faces of the sheets among the interfaces of a mesh, in their order.
 std::vector<InterfaceTriangle> sheets_of(const TetMesh& mesh);
 
-/// Appends the faces of sheets to the other interfaces: in ascending order of their sorted ids, each starting at
-/// its smallest id, oriented consistently across edges that two faces of a patch share. The first face of each
-/// piece is oriented by ascending ids. A piece with one side only, such as a Moebius strip, is oriented as far
-/// as possible. O(n log n).
+/// Appends the faces of sheets to the other interfaces: in ascending order of their sorted ids, each starting
+/// at its smallest id, oriented consistently across edges that two faces of a patch share. The first face of
+/// each piece is oriented by ascending ids. A piece with one side only, such as a Moebius strip, is oriented
+/// as far as possible. O(n log n).
 void append_sheets(std::vector<InterfaceTriangle>& interfaces, std::vector<InterfaceTriangle> sheets);
 
 /// The result of find_interfaces() for the mesh, followed by its sheets as they are.

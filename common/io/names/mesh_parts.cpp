@@ -137,7 +137,8 @@ std::vector<TetFace> faces_of_tets(const TetMesh& mesh) {
       const InterfaceTriangle& face = mesh.interfaces[at->second];
       // A sheet has its material on both sides: choose the tet behind the face.
       if (face.material == mesh.materials[t] &&
-          (!face.is_sheet() || equally_oriented(face.ids, {tet[corners[0]], tet[corners[1]], tet[corners[2]]})))
+          (!face.is_sheet() ||
+           equally_oriented(face.ids, {tet[corners[0]], tet[corners[1]], tet[corners[2]]})))
         out[at->second] = {static_cast<Index>(t), static_cast<std::uint8_t>(f)};
     }
   }

@@ -20,8 +20,8 @@ namespace {
 
 constexpr std::size_t max_groups = 0xffff;
 
-/// A group with a larger share of the faces between two tets of one material lists the faces of the tets; it is
-/// no sheet.
+/// A group with a larger share of the faces between two tets of one material lists the faces of the tets; it
+/// is no sheet.
 constexpr double max_sheet_share = 0.5;
 
 Triangle sorted(Triangle ids) {
@@ -87,8 +87,8 @@ class TriangleTaker {
       ++repeated_;
   }
 
-  /// Takes the triangles that are not on the boundary or an interface. Those of a group that has none there are
-  /// sheets.
+  /// Takes the triangles that are not on the boundary or an interface. Those of a group that has none there
+  /// are sheets.
   void take_others() {
     if (others_.empty()) return;
     const TetMesh& mesh = read_.mesh;
@@ -120,16 +120,15 @@ class TriangleTaker {
   /// Drops groups that list most faces of the tets.
   void drop_lists_of_all_faces() {
     const TetMesh& mesh = read_.mesh;
-    const std::size_t between_materials =
-        static_cast<std::size_t>(std::count_if(interfaces_.begin(), interfaces_.end(),
-                                               [](const InterfaceTriangle& t) { return t.other.has_value(); }));
+    const std::size_t between_materials = static_cast<std::size_t>(
+        std::count_if(interfaces_.begin(), interfaces_.end(),
+                      [](const InterfaceTriangle& t) { return t.other.has_value(); }));
     const std::size_t boundary = interfaces_.size() - between_materials;
     const std::size_t sides = 4 * mesh.tets.size();
     if (sides < boundary + 2 * between_materials) return;  // the mesh is not valid
     const auto inner = static_cast<double>((sides - boundary) / 2 - between_materials);
     for (auto sheet = sheets_.begin(); sheet != sheets_.end();) {
-      if (static_cast<double>(sheet->second.size()) > max_sheet_share * inner &&
-          sheet->second.size() > 1) {
+      if (static_cast<double>(sheet->second.size()) > max_sheet_share * inner && sheet->second.size() > 1) {
         inside_groups_ += sheet->second.size();
         sheet = sheets_.erase(sheet);
       } else {
@@ -257,8 +256,7 @@ class TriangleTaker {
   void set_patch(InterfaceTriangle& t, std::size_t index, std::int64_t number) {
     t.patch = static_cast<std::uint16_t>(index + 1);
     const auto name = listed_.names.find(number);
-    read_.mesh.patch_groups[{t.pair(), t.patch}] = {number,
-                                                    name == listed_.names.end() ? "" : name->second};
+    read_.mesh.patch_groups[{t.pair(), t.patch}] = {number, name == listed_.names.end() ? "" : name->second};
   }
 
   void note() {

@@ -121,8 +121,7 @@ void write_vtk(const MeshToWrite& written, const ByteSink& sink) {
   }
   std::vector<MeshField> fields = mesh.cell_fields;
   for (MeshField& field : fields) field = with_triangles(std::move(field), triangles);
-  write_fields(out, fields, {"material", vtk_surface_field},
-               tets + triangles);
+  write_fields(out, fields, {"material", vtk_surface_field}, tets + triangles);
   if (!mesh.point_fields.empty()) {
     out << "POINT_DATA " << written.nodes() << '\n';
     write_fields(out, written.node_fields(), {}, written.nodes());

@@ -73,9 +73,8 @@ class VtuReader {
     const bool has_surfaces = take_surfaces(piece, cells);
     add_fields(mesh.point_fields, data_.fields(piece.child("PointData"), points, nullptr, &rounded_),
                first_points_.back(), points);
-    std::vector<MeshField> cell_fields =
-        data_.fields(piece.child("CellData"), cells, tet_to_cell.size() < cells ? &tet_to_cell : nullptr,
-                     &rounded_);
+    std::vector<MeshField> cell_fields = data_.fields(
+        piece.child("CellData"), cells, tet_to_cell.size() < cells ? &tet_to_cell : nullptr, &rounded_);
     if (has_surfaces)
       std::erase_if(cell_fields, [](const MeshField& field) { return field.name == vtk_surface_field; });
     add_fields(mesh.cell_fields, std::move(cell_fields), first_tet, mesh.tets.size() - first_tet);
@@ -187,11 +186,11 @@ class VtuReader {
       } else {
         other_cells_.add(types[c], c);
         // A triangle that is not one of this program's surfaces is only counted, whatever its points are.
-        if (is_vtk_triangle(types[c]) && has_surfaces &&
-            end - begin == vtk_element_type(types[c])->nodes) {
+        if (is_vtk_triangle(types[c]) && has_surfaces && end - begin == vtk_element_type(types[c])->nodes) {
           const bool quadratic = types[c] == element::quadratic_triangle.vtk;
           FileTriangle t{c, quadratic, {node_of(c, 0), node_of(c, 1), node_of(c, 2)}, {}};
-          for (std::size_t k = 0; quadratic && k < midside_per_triangle; ++k) t.midside[k] = node_of(c, 3 + k);
+          for (std::size_t k = 0; quadratic && k < midside_per_triangle; ++k)
+            t.midside[k] = node_of(c, 3 + k);
           triangles_of_piece_.push_back(t);
         }
       }
@@ -369,7 +368,7 @@ struct SheetCells {
     const BoundaryGroups groups(only_sheets(mesh));
     for (const std::size_t face : faces) numbers.push_back(groups.number_of(mesh.interfaces[face]));
   }
-  std::vector<std::size_t> faces;      ///< indices into TetMesh::interfaces
+  std::vector<std::size_t> faces;     ///< indices into TetMesh::interfaces
   std::vector<std::int64_t> numbers;  ///< of their surfaces
 };
 
@@ -422,25 +421,26 @@ void write_vtu(const MeshToWrite& written, const ByteSink& sink) {
   sink("</Points>\n<Cells>\n");
   const std::size_t of_tet = midside ? 10 : 4, of_triangle = midside ? 6 : 3;
   const auto midside_node = [&](Index m) { return static_cast<std::int64_t>(mesh.points.size() + m); };
-  write_vtu_numbers(
-      sink, "Int64", "connectivity", "", of_tet * tets + of_triangle * sheets.faces.size(),
-      [&](std::size_t i) {
-        if (i < of_tet * tets) {
-          const std::size_t t = i / of_tet, k = i % of_tet;
-          return k < 4 ? std::int64_t{mesh.tets[t][k]} : midside_node(midside->of_tets[t][k - 4]);
-        }
-        const std::size_t face = sheets.faces[(i - of_tet * tets) / of_triangle],
-                          k = (i - of_tet * tets) % of_triangle;
-        return k < 3 ? std::int64_t{mesh.interfaces[face].ids[k]}
-                     : midside_node(midside->of_faces[face][k - 3]);
-      });
+  write_vtu_numbers(sink, "Int64", "connectivity", "", of_tet * tets + of_triangle * sheets.faces.size(),
+                    [&](std::size_t i) {
+                      if (i < of_tet * tets) {
+                        const std::size_t t = i / of_tet, k = i % of_tet;
+                        return k < 4 ? std::int64_t{mesh.tets[t][k]}
+                                     : midside_node(midside->of_tets[t][k - 4]);
+                      }
+                      const std::size_t face = sheets.faces[(i - of_tet * tets) / of_triangle],
+                                        k = (i - of_tet * tets) % of_triangle;
+                      return k < 3 ? std::int64_t{mesh.interfaces[face].ids[k]}
+                                   : midside_node(midside->of_faces[face][k - 3]);
+                    });
   write_vtu_numbers(sink, "Int64", "offsets", "", cells, [&](std::size_t i) {
     return static_cast<std::int64_t>(i < tets ? of_tet * (i + 1)
                                               : of_tet * tets + of_triangle * (i + 1 - tets));
   });
   write_vtu_numbers(sink, "UInt8", "types", "", cells, [&](std::size_t i) {
-    return static_cast<std::uint8_t>(i < tets ? (midside ? element::quadratic_tet : element::tet).vtk
-                                              : (midside ? element::quadratic_triangle : element::triangle).vtk);
+    return static_cast<std::uint8_t>(i < tets
+                                         ? (midside ? element::quadratic_tet : element::tet).vtk
+                                         : (midside ? element::quadratic_triangle : element::triangle).vtk);
   });
   sink("</Cells>\n");
   if (!mesh.point_fields.empty()) {

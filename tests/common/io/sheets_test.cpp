@@ -21,10 +21,11 @@ namespace {
 
 constexpr int n = 4;
 
-/// Two materials that meet at x = 2. A named sheet in the plane z = 2 lies in both; another one, at y = 1, only
-/// in the second.
+/// Two materials that meet at x = 2. A named sheet in the plane z = 2 lies in both; another one, at y = 1,
+/// only in the second.
 TetMesh with_sheets() {
-  TetMesh mesh = grid_mesh({n, n, n}, [](int x, int, int) { return std::optional<MaterialTag>(x < 2 ? 3 : 8); });
+  TetMesh mesh =
+      grid_mesh({n, n, n}, [](int x, int, int) { return std::optional<MaterialTag>(x < 2 ? 3 : 8); });
   mesh.material_names = {{3, "water"}, {8, "air"}};
   mesh.interfaces = find_interfaces(mesh);
   std::vector<InterfaceTriangle> sheets;
@@ -68,14 +69,15 @@ struct Format {
 void PrintTo(const Format& f, std::ostream* out) { *out << f.name; }
 
 class SheetFiles : public testing::TestWithParam<Format> {};
-INSTANTIATE_TEST_SUITE_P(
-    Formats, SheetFiles,
-    testing::Values(Format{"vtu", "m.vtu", ""}, Format{"msh22", "m.msh", "msh22"},
-                    Format{"msh41", "m.msh", "msh41"}, Format{"msh41_binary", "m.msh", "msh41-binary"},
-                    Format{"medit", "m.mesh", ""}, Format{"medit_binary", "m.meshb", ""},
-                    Format{"vtk", "m.vtk", ""}, Format{"abaqus", "m.inp", ""}, Format{"nastran", "m.bdf", ""},
-                    Format{"xdmf", "m.xdmf", ""}, Format{"tetgen", "m.ele", ""}),
-    [](const auto& f) { return f.param.name; });
+INSTANTIATE_TEST_SUITE_P(Formats, SheetFiles,
+                         testing::Values(Format{"vtu", "m.vtu", ""}, Format{"msh22", "m.msh", "msh22"},
+                                         Format{"msh41", "m.msh", "msh41"},
+                                         Format{"msh41_binary", "m.msh", "msh41-binary"},
+                                         Format{"medit", "m.mesh", ""}, Format{"medit_binary", "m.meshb", ""},
+                                         Format{"vtk", "m.vtk", ""}, Format{"abaqus", "m.inp", ""},
+                                         Format{"nastran", "m.bdf", ""}, Format{"xdmf", "m.xdmf", ""},
+                                         Format{"tetgen", "m.ele", ""}),
+                         [](const auto& f) { return f.param.name; });
 
 TEST_P(SheetFiles, AreReadBack) {
   const TetMesh mesh = with_sheets();
@@ -129,9 +131,7 @@ TEST(SheetFiles, GroupsOfAllFacesOfTetsAreNoSheets) {
   read.mesh.patch_groups.clear();
   FileTriangles listed;
   for (const MeshFace& f : mesh_faces(mesh.tets, mesh.points.size()))
-    listed.add(f.ids, f.count == 1                                               ? 1
-                      : mesh.materials[f.first] == mesh.materials[f.second] ? 2
-                                                                                 : 3);
+    listed.add(f.ids, f.count == 1 ? 1 : mesh.materials[f.first] == mesh.materials[f.second] ? 2 : 3);
   take_triangles(listed, "reference", "m.mesh", read);
   EXPECT_TRUE(sheets_of(read.mesh).empty());
   ASSERT_FALSE(read.dropped.empty());
@@ -139,7 +139,8 @@ TEST(SheetFiles, GroupsOfAllFacesOfTetsAreNoSheets) {
     return d.what == "triangles of references inside a material";
   });
   ASSERT_NE(inside, read.dropped.end());
-  EXPECT_EQ(inside->count, static_cast<std::size_t>(std::count(listed.groups.begin(), listed.groups.end(), 2)));
+  EXPECT_EQ(inside->count,
+            static_cast<std::size_t>(std::count(listed.groups.begin(), listed.groups.end(), 2)));
 }
 
 TEST(SheetFiles, InnerTrianglesOfAGroupOfTheBoundaryAreDropped) {

@@ -109,8 +109,8 @@ TEST(Sheets, OutsideTheirMaterialAreFound) {
   InterfaceTriangle on_boundary = mesh.interfaces.front();
   on_boundary.other = on_boundary.material;
   mesh.interfaces.push_back(on_boundary);
-  mesh.interfaces.push_back(mesh.interfaces[first - 1]);      // listed twice
-  mesh.interfaces.push_back({{0, 1, 0xffffff}, 1, 1});        // no such point
+  mesh.interfaces.push_back(mesh.interfaces[first - 1]);  // listed twice
+  mesh.interfaces.push_back({{0, 1, 0xffffff}, 1, 1});    // no such point
   InterfaceTriangle of_other = sheets_of(mesh).front();
   of_other.material = 2;
   of_other.other = 2;

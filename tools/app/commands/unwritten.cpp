@@ -112,8 +112,7 @@ void find_unwritten(const CommandLine& line, const TetMesh& mesh, PrepareReport&
     note_missing(shown(line.outputs.mesh), what, count, why, report);
   };
   find_unwritten_patches(line, format, mesh, report);
-  if (line.outputs.no_boundary)
-    note("faces of sheets", sheets_of(mesh).size(), ", as --no-boundary asks");
+  if (line.outputs.no_boundary) note("faces of sheets", sheets_of(mesh).size(), ", as --no-boundary asks");
   if (!format.names) note("names of materials", mesh.material_names.size(), no_place);
   if (!format.fields) note("fields", mesh.point_fields.size() + mesh.cell_fields.size(), no_place);
   find_name_changes(line, mesh, report);
