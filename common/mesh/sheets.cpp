@@ -9,7 +9,6 @@
 #include <tuple>
 #include <utility>
 
-#include "common/features/edge_uses.h"
 #include "common/mesh/disjoint_sets.h"
 #include "common/mesh/surface_chains.h"
 #include "tetwright/mesh_quality.h"
@@ -23,22 +22,33 @@ Triangle sorted_ids(Triangle ids) {
   return ids;
 }
 
+/// Use of an edge by a triangle of a patch.
+struct EdgeOfPatch {
+  InterfacePatch patch;
+  std::array<Index, 2> ends;  ///< ascending
+  Index triangle;
+  bool ascending;  ///< the triangle traverses the edge from the smaller end to the larger
+
+  bool same_edge(const EdgeOfPatch& o) const { return patch == o.patch && ends == o.ends; }
+  bool operator<(const EdgeOfPatch& o) const {
+    return std::tie(patch, ends, triangle) < std::tie(o.patch, o.ends, o.triangle);
+  }
+};
+
 /// Turns triangles so that those of a patch at a common edge traverse it in opposite directions.
 void orient(std::vector<InterfaceTriangle>& sheets) {
-  std::map<InterfacePatch, std::uint32_t> numbers;
-  std::vector<Triangle> triangles;
-  std::vector<std::uint32_t> patches;
-  for (const InterfaceTriangle& t : sheets) {
-    triangles.push_back(t.ids);
-    patches.push_back(
-        numbers.try_emplace({t.pair(), t.patch}, static_cast<std::uint32_t>(numbers.size())).first->second);
-  }
+  std::vector<EdgeOfPatch> uses;
+  for (Index t = 0; t < sheets.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index p = sheets[t].ids[k], q = sheets[t].ids[(k + 1) % 3];
+      uses.push_back({{sheets[t].pair(), sheets[t].patch}, ascending_edge(p, q), t, p < q});
+    }
+  std::sort(uses.begin(), uses.end());
   struct Neighbour {
     Index triangle;
     bool turned;  ///< whether one of the two triangles must be turned
   };
   std::vector<std::vector<Neighbour>> neighbours(sheets.size());
-  const std::vector<EdgeUse> uses = edge_uses(triangles, patches);
   for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
     while (j < uses.size() && uses[j].same_edge(uses[i])) ++j;
     if (j - i != 2) continue;
