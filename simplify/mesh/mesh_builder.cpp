@@ -127,8 +127,16 @@ void MeshBuilder::link_faces() {
 
 void MeshBuilder::take_sheets(const std::vector<InterfaceTriangle>& interfaces) {
   std::map<Triangle, const InterfaceTriangle*> sheets;
+  const auto refuse = [&](std::size_t count, const char* what, const Triangle& ids) {
+    const std::vector<Vec3>& at = mesh_.positions_;
+    throw InputError(name_, 0,
+                     std::to_string(count) + what +
+                         place(mesh_.space_.to_input((at[ids[0]] + at[ids[1]] + at[ids[2]]) / 3)) +
+                         "; `tetwright check` lists all of them");
+  };
   for (const InterfaceTriangle& t : interfaces)
-    if (t.is_sheet()) sheets.emplace(face_key(t.ids), &t);
+    if (t.is_sheet() && !sheets.emplace(face_key(t.ids), &t).second)
+      refuse(1, " face of its sheets is listed twice, at ", t.ids);
   if (sheets.empty()) return;
   std::vector<std::uint8_t> on_sheet(mesh_.positions_.size(), 0);
   for (const auto& [key, triangle] : sheets)
@@ -149,15 +157,9 @@ void MeshBuilder::take_sheets(const std::vector<InterfaceTriangle>& interfaces) 
       tet.links[f] = FaceLink::to(link.tet(), true);
       sheets.erase(found);
     }
-  if (sheets.empty()) return;
-  const Triangle& left = sheets.begin()->first;
-  throw InputError(
-      name_, 0,
-      std::to_string(sheets.size()) +
-          " faces of its sheets do not lie between two tets of their material, the first at " +
-          place(mesh_.space_.to_input(
-              (mesh_.positions_[left[0]] + mesh_.positions_[left[1]] + mesh_.positions_[left[2]]) / 3)) +
-          "; `tetwright check` lists all of them");
+  if (!sheets.empty())
+    refuse(sheets.size(), " faces of its sheets do not lie between two tets of their material, the first at ",
+           sheets.begin()->first);
 }
 
 void MeshBuilder::freeze_sheet_corners() {

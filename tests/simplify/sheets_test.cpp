@@ -239,6 +239,25 @@ TEST(Sheets, CurvedSheetsStayOnTheirOwnSurfaceBesideAReference) {
       for (const Index p : t.ids) EXPECT_NEAR(after.points[p].z(), 6 - height(after.points[p]), 0.15);
 }
 
+TEST(Sheets, AreMeasuredAgainstThemselvesBesideASurface) {
+  // As after meshing: the given surface is the boundary alone.
+  const TetMesh mesh = box_with({within, crossing});
+  TriangleMesh surface;
+  surface.points = mesh.points;
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    if (!t.is_sheet()) surface.triangles.push_back(t.ids);
+  SimplifyOptions options = to(800);
+  options.surface = &surface;
+  options.tolerance = 0.1;
+  SimplifyReport report;
+  const TetMesh after = simplify(mesh, options, &report);
+  expect_sheets(mesh, after, {within, crossing});
+  ASSERT_TRUE(report.deviation);
+  EXPECT_LT(report.deviation->upper(), 0.1);
+  EXPECT_EQ(report.deviation->apart_area, 0);
+  EXPECT_EQ(report.deviation->hidden_area, 0);
+}
+
 TEST(Sheets, ThatAreNoFacesOfTheirMaterialAreAnError) {
   TetMesh mesh = grid_mesh(2);
   mesh.interfaces = find_interfaces(mesh);
@@ -250,6 +269,10 @@ TEST(Sheets, ThatAreNoFacesOfTheirMaterialAreAnError) {
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].code, DiagnosticCode::sheet_faces_misplaced);
   EXPECT_TRUE(findings[0].places.at(0).at);
+
+  TetMesh twice = box_with({within});
+  twice.interfaces.push_back(twice.interfaces.back());
+  EXPECT_THROW(simplify(twice, to(10)), InputError);
 }
 
 TEST(Sheets, SecondOrderTetsFollowThem) {
