@@ -66,7 +66,8 @@ class InputSurface {
   /// Accuracy of the distances, working coordinates.
   double accuracy() const;
 
-  static constexpr ProjectionTree::Kind given_kind{0, 0, 0};
+  /// No face of a mesh has the outside on both sides, but a sheet has its region on both.
+  static constexpr ProjectionTree::Kind given_kind{outside_id, outside_id, 0};
   ProjectionTree triangles_;
   std::vector<std::uint8_t> hidden_;  ///< by item of triangles_: found by find_hidden()
   double reach_ = 0;
