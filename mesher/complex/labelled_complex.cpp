@@ -253,12 +253,12 @@ class ComplexBuilder {
     }
   }
 
-  /// Whether a body contains a cell that an earlier one keeps.
-  bool loses(std::size_t body, Index cell) const {
-    if (rule_ != OverlapRule::first || windings_[cell][body] <= 0) return false;
+  /// Whether a body contains a cell that it does not lose to an earlier one (OverlapRule::first).
+  bool keeps(std::size_t body, Index cell) const {
+    if (windings_[cell][body] <= 0) return false;
     for (std::size_t a = 0; a < body; ++a)
-      if (windings_[cell][a] > 0 && cross(a, body)) return true;
-    return false;
+      if (windings_[cell][a] > 0 && cross(a, body)) return false;
+    return true;
   }
 
   void assemble() {
@@ -279,15 +279,15 @@ class ComplexBuilder {
       const auto [back_cell, front_cell] = cells_.sides[t];
       const RegionIndex behind = labels_[back_cell], front = labels_[front_cell];
       for (const Use& u : uses(t)) {
-        if (loses(u.body, back_cell) && loses(u.body, front_cell)) continue;
+        if (rule_ == OverlapRule::first && keeps(u.body, back_cell) == keeps(u.body, front_cell)) continue;
         out.sources_.push_back({u.body, static_cast<Index>(result_.body_triangles[u.body].size()), u.turned});
         add_triangle(u.body, welded_[t].ids, u.turned, u.source);
       }
       // What an earlier body keeps bounds the later one, too.
       for (std::size_t b = 0; b < bodies_ && rule_ == OverlapRule::first; ++b)
         if (windings_[back_cell][b] > 0 && windings_[front_cell][b] > 0 &&
-            loses(b, back_cell) != loses(b, front_cell))
-          add_triangle(b, welded_[t].ids, loses(b, back_cell), no_index);
+            keeps(b, back_cell) != keeps(b, front_cell))
+          add_triangle(b, welded_[t].ids, keeps(b, front_cell), no_index);
       for (std::size_t b = bodies_; b < surfaces; ++b)
         if (const auto own = static_cast<RegionIndex>(b + 1); (behind == own) != (front == own))
           add_triangle(b, welded_[t].ids, front == own, no_index);

@@ -137,6 +137,8 @@ nlohmann::json topology_json(const Topology& t, const std::map<MaterialTag, std:
   for (const auto& [pair, surface] : t.interfaces)
     j["interfaces"].push_back(
         {{"materials", pair_json(pair)}, {"components", surface.components}, {"euler", surface.euler}});
+  for (const auto& [name, sheet] : t.sheets)
+    j["sheets"].push_back({{"name", name}, {"components", sheet.components}, {"euler", sheet.euler}});
   if (t.touching_fans) j["touching_fans"] = *t.touching_fans;
   if (t.junction_curves)
     j["junction_curves"] = {{"components", t.junction_curves->components},
@@ -159,19 +161,27 @@ nlohmann::json mesh_json(const MeshStatistics& m, const std::map<MaterialTag, st
     interfaces.push_back(
         {{"materials", pair_json(pair)}, {"triangles", interface.triangles}, {"area", interface.area}});
   }
-  return {{"tets", m.tets},
-          {"points", m.points},
-          {"interfaces", interfaces},
-          {"junction_edges", m.junction_edges},
-          {"materials", materials},
-          {"volume", m.volume},
-          {"min_solid_angle", m.min_solid_angle},
-          {"mean_solid_angle", m.mean_solid_angle},
-          {"threshold", threshold},
-          {"percent_below_threshold", m.below_percent},
-          {"min_dihedral", m.min_dihedral},
-          {"max_dihedral", m.max_dihedral},
-          {"histogram", m.histogram.counts}};
+  nlohmann::json j = {{"tets", m.tets},
+                      {"points", m.points},
+                      {"interfaces", interfaces},
+                      {"junction_edges", m.junction_edges},
+                      {"materials", materials},
+                      {"volume", m.volume},
+                      {"min_solid_angle", m.min_solid_angle},
+                      {"mean_solid_angle", m.mean_solid_angle},
+                      {"threshold", threshold},
+                      {"percent_below_threshold", m.below_percent},
+                      {"min_dihedral", m.min_dihedral},
+                      {"max_dihedral", m.max_dihedral},
+                      {"histogram", m.histogram.counts}};
+  for (const SheetStatistics& s : m.sheets)
+    j["sheets"].push_back({{"name", s.name},
+                           {"triangles", s.triangles},
+                           {"area", s.area},
+                           {"pieces", s.pieces},
+                           {"border_length", s.border_length},
+                           {"border_pieces", s.border_pieces}});
+  return j;
 }
 
 nlohmann::json input_json(const PrepareReport& run) {

@@ -100,6 +100,7 @@ enum class DiagnosticCode : std::uint8_t {
   boundary_points_non_manifold,
   point_star_split,
   self_intersections,
+  sheet_faces_misplaced,
   topology_differs,
   tolerance_exceeded,
   // Runs without a result.
