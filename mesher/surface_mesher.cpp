@@ -12,6 +12,7 @@
 #include "mesher/complex/labelled_complex.h"
 #include "mesher/cut/complex_patches.h"
 #include "mesher/cut/crease_fitting.h"
+#include "mesher/cut/strip_collapse.h"
 #include "mesher/cut/thin_wall_recovery.h"
 #include "mesher/distance/body_field.h"
 #include "mesher/distance/field_solid.h"
@@ -424,6 +425,7 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
     allow_for_chamfers(dense.report);
     const auto features = std::make_shared<const FeatureSurface>(
         input, patches, CellTuning::Patches::corner_reach * dense.report.cell_size, dense.field);
+    if (input.complex) collapse_strips(dense.mesh, *input.complex, *features, dense.report.cell_size);
     fit_creases(dense.mesh, *features, *field, dense.report.cell_size);
     measure_walls(dense, *field);
     for (const InterfaceTriangle& t : dense.mesh.interfaces)

@@ -114,6 +114,20 @@ struct CutTuning {
     static constexpr int max_rounds = 4;
   };
 
+  /// Strips between regions that face each other across a curve.
+  struct Strips {
+    /// Sheets at a curve from which on the lattice leaves strips: up to three are cut as they are.
+    static constexpr std::size_t min_sheets = 4;
+    /// Max distance of a strip's faces from the curve, cells.
+    static constexpr double curve_reach = 3;
+    /// Faces farther than this from a sheet between their regions, cells, are strips.
+    static constexpr double sheet_reach = 1.5;
+    /// Tets keep this solid angle, sr, when edges are collapsed; fitting and simplification improve them.
+    static constexpr double min_solid_angle = 1e-4;
+    /// Max rounds: each may make edges of others collapsible.
+    static constexpr int max_rounds = 12;
+  };
+
   /// Moves of boundary points to their patch, crease or corner (the guide, Fitting creases, step 5).
   struct Fitting {
     /// Max distance of a point from its target, cells.
