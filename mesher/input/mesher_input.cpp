@@ -12,6 +12,7 @@
 #include "mesher/input/body_builder.h"
 #include "mesher/input/body_contacts.h"
 #include "mesher/input/qualified_names.h"
+#include "mesher/input/sheet_surfaces.h"
 #include "mesher/tuning/input_tuning.h"
 #include "tetwright/error.h"
 
@@ -119,7 +120,7 @@ double largest_coordinate(const MesherInput& input) {
 
 MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers,
                               NestedRule nested, const ContactOptions& contact, const RegionOptions& regions,
-                              Progress* progress) {
+                              Progress* progress, SheetOptions sheets) {
   if (surfaces.empty()) throw UsageError("there is no surface to mesh");
   MesherInput input;
   name_groups(surfaces, input.findings);
@@ -132,7 +133,10 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
   find_bounding_box(input);
   validate_materials(input);
   require_measurable(longest_side(input), largest_coordinate(input), "surface", input.bodies[0].file);
-  join_bodies(input, contact, progress);
+  SheetSoup inner;
+  for (const SheetSurface& s : sheets.surfaces)
+    if (!s.divides) inner.add(s, input.sheets, input.findings);
+  join_bodies(input, inner, contact, progress);
   return input;
 }
 

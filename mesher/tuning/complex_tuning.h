@@ -58,6 +58,19 @@ struct ComplexTuning {
     /// triangles with a common edge.
     static constexpr double tie = 1e-9;
   };
+
+  /// Where points have a side of a sheet.
+  struct Sheets {
+    /// Distance from a sheet up to which points have a side, voxels: cells of one voxel at the sheet are
+    /// inside as a whole, and the rim beyond does not touch them.
+    static constexpr double reach = 3;
+    /// Length of the strips that continue sheets beyond their borders, voxels: the reach, also at corners
+    /// where the gap between two strips is filled by chords.
+    static constexpr double continued = 2 * reach;
+    /// Distance from an edge, voxels, at which the side of another sheet at that edge is certain: well above
+    /// rounding, and below the size of facets.
+    static constexpr double step_inside = 1e-3;
+  };
 };
 
 }  // namespace tetwright

@@ -74,6 +74,8 @@ enum class DiagnosticCode : std::uint8_t {
   names_qualified,
   bodies_overlap,
   bodies_not_joined,
+  sheet_cut_off,
+  sheet_on_faces,
   // Segmented volumes.
   no_outside,
   islands_merged,
