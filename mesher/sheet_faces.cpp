@@ -3,7 +3,8 @@
 
 #include <algorithm>
 
-#include "common/mesh/mesh_faces.h"
+#include "tetwright/mesh_quality.h"
+
 
 namespace tetwright {
 

@@ -199,10 +199,9 @@ SheetPatches patches_of_sheets(const MesherInput& input, const MesherOptions& op
   std::map<std::array<std::uint32_t, 3>, std::uint32_t> numbers;
   for (const LabelledComplex::SheetFace& f : complex.sheets) {
     triangles.push_back(f.ids);
-    groups.push_back(numbers
-                         .try_emplace({f.component, f.region, f.sheet},
-                                      static_cast<std::uint32_t>(numbers.size()))
-                         .first->second);
+    groups.push_back(
+        numbers.try_emplace({f.component, f.region, f.sheet}, static_cast<std::uint32_t>(numbers.size()))
+            .first->second);
   }
   result.found = find_patches(complex.points, triangles,
                               {options.feature_angle, CellTuning::Patches::min_area * cell * cell}, groups,

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "common/features/edge_uses.h"
-#include "common/geometry/morton.h"
 #include "common/geometry/point_triangle.h"
 #include "common/geometry/triangle_distance.h"
 #include "common/parallel/parallel_sort.h"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/geometry/box_tree.h"
+#include "common/geometry/morton.h"
 #include "mesher/complex/labelled_complex.h"
 #include "mesher/domain/grid_frame.h"
 

@@ -331,7 +331,8 @@ void fit_creases(TetMesh& mesh, const FeatureSurface& surface, const MaterialFie
   // Beyond the borders of sheets there is nothing.
   mesh.interfaces.erase(std::remove_if(mesh.interfaces.begin() + first_inner, mesh.interfaces.end(),
                                        [&](const InterfaceTriangle& t) {
-                                         return t.patch == surface.no_patch() || surface.is_continued(t.patch);
+                                         return t.patch == surface.no_patch() ||
+                                                surface.is_continued(t.patch);
                                        }),
                         mesh.interfaces.end());
 }

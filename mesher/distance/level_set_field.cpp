@@ -278,8 +278,8 @@ const WallChanges* LevelSetField::wall_changes() const {
 std::shared_ptr<const MaterialField> LevelSetField::with_true_walls() const {
   std::vector<std::shared_ptr<const LevelSet>> as_is;
   for (const auto& level_set : level_sets_) as_is.push_back(LevelSet::with_true_walls(level_set));
-  return std::make_shared<LevelSetField>(voxels(), std::move(as_is), level_set_regions_, zone_,
-                                         sheets_, refinement());
+  return std::make_shared<LevelSetField>(voxels(), std::move(as_is), level_set_regions_, zone_, sheets_,
+                                         refinement());
 }
 
 bool LevelSetField::contains(const Vec3& point) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <compare>
 #include <cstdint>
@@ -20,13 +21,13 @@ class SheetSides {
   static constexpr std::size_t capacity = 12;
   /// A component and one of its sides.
   struct Side {
-    std::uint32_t component : 31;
-    std::uint32_t in_front : 1;
+    std::uint32_t component = 0;
+    bool in_front = false;
     auto operator<=>(const Side&) const = default;
   };
 
   void add(std::uint32_t component, bool in_front) {
-    if (size_ < capacity) items_[size_++] = {component & 0x7fffffff, in_front ? 1u : 0u};
+    if (size_ < capacity) items_[size_++] = {component, in_front};
   }
   bool empty() const { return size_ == 0; }
   const Side* begin() const { return items_.data(); }

@@ -153,8 +153,7 @@ void join_bodies(MesherInput& input, const SheetSoup& sheets, const ContactOptio
   SurfaceSoup soup = soup_of(input);
   SoupSheets in_soup;
   in_soup.count = input.sheets.size();
-  if (!sheets.empty())
-    sheets.append_to(soup, static_cast<std::uint32_t>(input.bodies.size()), in_soup.sheet);
+  if (!sheets.empty()) sheets.append_to(soup, static_cast<std::uint32_t>(input.bodies.size()), in_soup.sheet);
   const ImprintedSurfaces imprinted = imprint_surfaces(soup, tolerance, progress);
   if (!imprinted.any && sheets.empty()) return;
   for (const MesherInput::Body& body : input.bodies)
