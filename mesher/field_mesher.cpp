@@ -234,6 +234,7 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
       label_lattice(std::move(points), std::move(regions), std::move(tets), divided.regions().size(),
                     options.keep_outside, &report.isolated_vertices);
   stages.throw_if_stopped();
+  if (sheeted) mark_rims(lattice, *sheeted);
   read_star_values(lattice, divided);
   report.lattice_tets = lattice.tets.size();
   report.seconds_lattice = stages.seconds();

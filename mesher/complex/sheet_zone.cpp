@@ -16,7 +16,7 @@ namespace tetwright {
 
 namespace {
 
-using Sheets = ComplexTuning::Sheets;
+using SheetLengths = ComplexTuning::Sheets;
 using Zone = ComplexTuning::Zone;
 
 }  // namespace
@@ -28,10 +28,10 @@ SheetZone::SheetZone(const LabelledComplex& complex, const GridFrame& voxels)
   find_voxels(voxels);
 }
 
-double SheetZone::reach() { return Sheets::reach; }
+double SheetZone::reach() { return SheetLengths::reach; }
 
 void SheetZone::add_faces(const LabelledComplex& complex, const GridFrame& voxels) {
-  const SheetBorders borders = continue_sheets(complex, Sheets::continued * voxels.cell_size);
+  const SheetBorders borders = continue_sheets(complex, SheetLengths::continued * voxels.cell_size);
   std::vector<Vec3> points;
   points.reserve(borders.points.size());
   for (const Vec3& p : borders.points) points.push_back(voxels.to_grid(p));
@@ -60,8 +60,8 @@ void SheetZone::add_faces(const LabelledComplex& complex, const GridFrame& voxel
       middles.push_back(f.corners[0] + f.corners[1] + f.corners[2]);
       if (!f.continued) component.box.add(boxes.back());
     }
-    component.box.low.array() -= 2 * Sheets::reach;
-    component.box.high.array() += 2 * Sheets::reach;
+    component.box.low.array() -= 2 * SheetLengths::reach;
+    component.box.high.array() += 2 * SheetLengths::reach;
     const std::vector<Index> order = median_order(boxes, middles, Zone::leaf_size);
     component.tree = BoxTree(order.size(), Zone::leaf_size, [&](std::size_t i) { return boxes[order[i]]; });
     for (const Index i : order) component.faces.push_back(faces[c][i]);
@@ -117,7 +117,7 @@ void SheetZone::find_voxels(const GridFrame& voxels) {
 }
 
 SheetZone::Foot SheetZone::nearest(const Component& component, const Vec3& point, bool continued) {
-  constexpr double limit = 4 * Sheets::reach * Sheets::reach;
+  constexpr double limit = 4 * SheetLengths::reach * SheetLengths::reach;
   Foot found{limit, {}, nullptr};
   double alignment = 0;
   std::size_t number = 0;
@@ -158,13 +158,13 @@ void SheetZone::find(const Vec3& point, std::vector<Near>& out) const {
     // Just inside the nearest triangle, off the edges that it shares with other sheets.
     const auto& [a, b, d] = own.face->corners;
     const Vec3 at = point - own.away, inwards = (a + b + d) / 3 - at;
-    targets.push_back(at + std::min(0.5, Sheets::step_inside / inwards.norm()) * inwards);
+    targets.push_back(at + std::min(0.5, SheetLengths::step_inside / inwards.norm()) * inwards);
   }
   for (std::size_t k = 0; k < out.size(); ++k)
     for (const std::uint32_t other : components_[out[k].component].adjacent) {
       const auto between = std::lower_bound(out.begin(), out.end(), other,
                                             [](const Near& n, std::uint32_t c) { return n.component < c; });
-      if (between == out.end() || between->component != other || between->distance >= Sheets::reach) continue;
+      if (between == out.end() || between->component != other || between->distance >= SheetLengths::reach) continue;
       const Foot foot = nearest(components_[other], targets[k], true);
       if (foot.face && (side(foot) > 0) != between->in_front()) out[k].visible = false;
     }

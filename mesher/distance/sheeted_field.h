@@ -30,6 +30,7 @@ class SheetSides {
     if (size_ < capacity) items_[size_++] = {component, in_front};
   }
   bool empty() const { return size_ == 0; }
+  std::size_t size() const { return size_; }
   const Side* begin() const { return items_.data(); }
   const Side* end() const { return items_.data() + size_; }
   /// The side of a component, or null.

@@ -127,7 +127,10 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
   input.groups = measure_groups(surfaces);
   std::set<MaterialTag> tags = tags_in_use(surfaces, layers);
   BodyBuilder builder(input, std::move(tags), contact, progress);
-  builder.add(std::move(surfaces), nested, regions.rule);
+  std::vector<Partition> partitions;
+  for (const SheetSurface& s : sheets.surfaces)
+    if (s.divides) partitions.push_back(make_partition(s, sheets.extend, input.findings));
+  builder.add(std::move(surfaces), nested, regions.rule, partitions);
   builder.name(regions.seeds);
   input.layers = std::move(layers);
   find_bounding_box(input);

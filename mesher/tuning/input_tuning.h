@@ -34,6 +34,9 @@ struct InputTuning {
     /// Relative difference below which volumes are equal, and the step of coordinates, in diagonals, at which
     /// lowest points are compared: the rounding of coordinates written with six digits.
     static constexpr double equal = 1e-6;
+    /// Step from the middle of a cell's largest triangle to a point inside, as a share of the triangle's
+    /// size: above rounding, below the thickness of cells.
+    static constexpr double step_inside = 1e-4;
   };
 
   /// Max number of labels named in messages: enough to recognise a table of labels, few enough to read.

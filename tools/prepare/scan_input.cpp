@@ -212,6 +212,14 @@ std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs,
   return surfaces;
 }
 
+/// Diagonal of the bounding box of all surfaces.
+double diagonal_of(const std::vector<MaterialSurface>& surfaces) {
+  Eigen::AlignedBox3d box;
+  for (const MaterialSurface& s : surfaces)
+    for (const Vec3& p : s.surface.points) box.extend(p);
+  return box.isEmpty() ? 0 : box.diagonal().norm();
+}
+
 MesherInput read_surfaces(std::vector<Input>& inputs, PrepareRun& run) {
   const BodyOptions& options = run.options.bodies;
   SheetOptions sheets;
@@ -226,6 +234,7 @@ MesherInput read_surfaces(std::vector<Input>& inputs, PrepareRun& run) {
     contact.relative_tolerance = options.contact_tolerance->value / 100;
   else if (options.contact_tolerance)
     contact.tolerance = options.contact_tolerance->value;
+  if (options.extend) sheets.extend = options.extend->in_input_units(diagonal_of(surfaces));
   MesherInput input = make_mesher_input(std::move(surfaces), std::move(layers), options.nested, contact,
                                         options.regions, &run.progress, std::move(sheets));
   std::vector<Diagnostic>& all = run.report.diagnostics;

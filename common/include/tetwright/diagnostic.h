@@ -76,6 +76,7 @@ enum class DiagnosticCode : std::uint8_t {
   bodies_not_joined,
   sheet_cut_off,
   sheet_on_faces,
+  partition_ends,
   // Segmented volumes.
   no_outside,
   islands_merged,
