@@ -95,15 +95,17 @@ void SheetZone::find_voxels(const GridFrame& voxels) {
   voxels_ = parallel_collect<MortonKey>(
       0, faces.size(), ComplexGrains::divided,
       [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
-        constexpr double limit = half_cube_diagonal * half_cube_diagonal;
+        constexpr double limit =
+            (half_cube_diagonal + SheetLengths::fine_cells) * (half_cube_diagonal + SheetLengths::fine_cells);
         for (std::size_t i = begin; i < end; ++i) {
           Box3 box;
           for (const Vec3& p : faces[i]) box.add(p);
           std::array<int, 3> low, high;
           for (int a = 0; a < 3; ++a) {
             const auto k = static_cast<std::size_t>(a);
-            low[k] = std::max(0, static_cast<int>(std::floor(box.low[a])) - 1);
-            high[k] = std::min(voxels.cells[k] - 1, static_cast<int>(std::floor(box.high[a])) + 1);
+            low[k] = std::max(0, static_cast<int>(std::floor(box.low[a] - SheetLengths::fine_cells)) - 1);
+            high[k] = std::min(voxels.cells[k] - 1,
+                               static_cast<int>(std::floor(box.high[a] + SheetLengths::fine_cells)) + 1);
           }
           const TriangleDistance distance(faces[i][0], faces[i][1], faces[i][2]);
           for (int z = low[2]; z <= high[2]; ++z)
@@ -164,7 +166,8 @@ void SheetZone::find(const Vec3& point, std::vector<Near>& out) const {
     for (const std::uint32_t other : components_[out[k].component].adjacent) {
       const auto between = std::lower_bound(out.begin(), out.end(), other,
                                             [](const Near& n, std::uint32_t c) { return n.component < c; });
-      if (between == out.end() || between->component != other || between->distance >= SheetLengths::reach) continue;
+      if (between == out.end() || between->component != other || between->distance >= SheetLengths::reach)
+        continue;
       const Foot foot = nearest(components_[other], targets[k], true);
       if (foot.face && (side(foot) > 0) != between->in_front()) out[k].visible = false;
     }

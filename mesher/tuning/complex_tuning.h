@@ -61,9 +61,12 @@ struct ComplexTuning {
 
   /// Where points have a side of a sheet.
   struct Sheets {
-    /// Distance from a sheet up to which points have a side, voxels: cells of one voxel at the sheet are
-    /// inside as a whole, and the rim beyond does not touch them.
-    static constexpr double reach = 3;
+    /// Voxels this far from a sheet, voxels, are cells of their own: all edges that cross the sheet then join
+    /// points of such cells.
+    static constexpr double fine_cells = 0.75;
+    /// Distance from a sheet up to which points have a side, voxels: both ends of an edge of such cells that
+    /// crosses the sheet, also where they have moved.
+    static constexpr double reach = 1.75;
     /// Length of the strips that continue sheets beyond their borders, voxels: the reach, also at corners
     /// where the gap between two strips is filled by chords.
     static constexpr double continued = 2 * reach;
