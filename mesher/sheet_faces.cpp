@@ -5,7 +5,6 @@
 
 #include "tetwright/mesh_quality.h"
 
-
 namespace tetwright {
 
 std::vector<InterfaceTriangle> sheet_faces(const CutMesh& mesh, const SheetedField& field,

@@ -90,7 +90,7 @@ struct SheetLoss {
   }
 };
 
-/// What becomes of a sheet's area, by reason.
+/// The areas of a sheet, by fate.
 struct SheetFate {
   double kept = 0;     ///< area in the complex, input units squared
   SheetLoss outside;   ///< in no body

@@ -14,7 +14,7 @@ namespace tetwright {
 /// The patches of a complex: the faces of one pair of regions that belong to the same patch of each of the
 /// bodies whose surface they are.
 struct ComplexPatches {
-  /// Those of the complex; with inner sheets, further ones.
+  /// The complex's points; with inner sheets, further ones.
   std::vector<Vec3> points;
   /// The faces of the complex, towards the outside if that is on one side; then those of inner sheets and of
   /// their continuations.

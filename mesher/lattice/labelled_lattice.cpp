@@ -187,7 +187,7 @@ void mark_rims(LabelledLattice& lattice, const SheetedField& field) {
   const auto separated = [&](RegionIndex a, RegionIndex b) {
     return field.part(a).region != field.part(b).region || field.component_between(a, b) != no_index;
   };
-  // Of two parts the one with sides of fewer sheets is the outer one.
+  // The part with sides of fewer sheets is the outer one.
   const auto is_outer = [&](RegionIndex a, RegionIndex b) {
     const std::size_t of_a = field.part(a).sides.size(), of_b = field.part(b).sides.size();
     return of_a != of_b ? of_a < of_b : a < b;
