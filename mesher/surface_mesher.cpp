@@ -210,6 +210,31 @@ SheetPatches patches_of_sheets(const MesherInput& input, const MesherOptions& op
   return result;
 }
 
+/// The sheets inside bodies.
+std::vector<ExpectedSheet> expected_sheets(const MesherInput& input) {
+  if (!input.complex || input.complex->sheets.empty()) return {};
+  const LabelledComplex& complex = *input.complex;
+  std::vector<ExpectedSheet> expected;
+  for (std::uint32_t k = 0; k < input.sheets.size(); ++k) {
+    TetMesh mesh{.points = complex.points};
+    ExpectedSheet sheet{.file = input.sheets[k].file};
+    mesh.patch_groups[{{1, 1}, 0}] = input.sheets[k].group;
+    double largest = -1;
+    for (const LabelledComplex::SheetFace& f : complex.sheets) {
+      if (f.sheet != k) continue;
+      mesh.interfaces.push_back({f.ids, 1, 1});
+      const auto& [a, b, c] = f.ids;
+      const Vec3 &p = mesh.points[a], &q = mesh.points[b], &r = mesh.points[c];
+      const double size = (q - p).cross(r - p).norm();
+      if (size > largest) largest = size, sheet.place = (p + q + r) / 3;
+    }
+    sheet.shape = sheet_statistics(mesh).front();
+    sheet.shape.triangles = 0;
+    expected.push_back(std::move(sheet));
+  }
+  return expected;
+}
+
 /// Drops the creases of a body except the borders of groups.
 void give_up_creases(const MesherInput::Body& body, SurfacePatches& found) {
   if (!found.any()) return;
@@ -430,6 +455,7 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
           {input.bodies[body].name, wall.gap, wall.on_purpose, wall.thickness * report.cell_size,
            wall.area * report.cell_size * report.cell_size, voxels.to_input(wall.place)});
   sheets.finer = combine(std::move(sheets.finer), std::move(bodies.finer));
+  report.sheets = expected_sheets(input);
   expect_materials(input, *field, interface_voxels, sheets.finer.refinement > 0, report);
 
   DenseMesh dense = mesh_field(

@@ -19,6 +19,7 @@
 #include "tetwright/error.h"
 #include "tetwright/mesh_quality.h"
 #include "tetwright/resources.h"
+#include "tetwright/sheets.h"
 
 namespace tetwright {
 
@@ -421,8 +422,13 @@ TetMesh Remesher::mesh() const {
   };
   add_fields(impl_->point_fields, "point_field_", points, out.point_fields);
   add_fields(impl_->tet_fields, "tet_field_", tets, out.cell_fields);
+  for (Index p = 0; p < mesh.point_slots(); ++p) number[p] = number[mesh.original(p)];
+  const FacePatches patches = renumbered(impl_->grid.patches(), number);
+  std::vector<InterfaceTriangle> sheets = mesh.sheets(number);
+  put_patches(patches, sheets);
   out.interfaces = find_interfaces(out);
-  put_patches(renumbered(impl_->grid.patches(), number), out.interfaces);
+  put_patches(patches, out.interfaces);
+  append_sheets(out.interfaces, std::move(sheets));
   return out;
 }
 

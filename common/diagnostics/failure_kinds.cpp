@@ -94,6 +94,15 @@ constexpr std::array failure_table = std::to_array<DiagnosticKind>({
      .message = "intersecting pairs of boundary or interface triangles",
      .cause = "The mesh overlaps itself.",
      .remedy = "Mesh the surface again; `improve` does not remove overlaps."},
+    {.code = sheet_faces_misplaced,
+     .name = "sheet-faces-misplaced",
+     .severity = Severity::error,
+     .title = "faces of sheets that are not inside a material",
+     .message = "faces of sheets that are not between two tets of their material",
+     .cause =
+         "A sheet is an inner face with one material on both sides; these faces belong to another mesh, lie "
+         "on the boundary or an interface, or are listed twice.",
+     .remedy = "Save sheets and tets again from one mesh."},
     {.code = topology_differs,
      .name = "topology-differs",
      .severity = Severity::error,

@@ -39,12 +39,21 @@ std::map<Edge, PatchesAtEdge> patches_at_edges(const TetMesh& mesh) {
 /// Whether both triangles at an edge belong to one patch.
 bool is_smooth(const PatchesAtEdge& at) { return at.size() == 1 && at.begin()->second == 2; }
 
+bool has_sheet(const PatchesAtEdge& at) {
+  return std::any_of(at.begin(), at.end(), [](const auto& patch) {
+    const MaterialPair& pair = patch.first.first;
+    return pair.first == pair.second;
+  });
+}
+
 }  // namespace
 
 SurfaceToFollow follow(const ReferenceSurface& reference) {
   SurfaceToFollow surface;
   surface.onto_patch = [&reference](const Vec3& p, const InterfacePatch& patch, double max_distance) {
     const auto& [pair, number] = patch;
+    if (pair.first == pair.second)
+      return std::optional<Vec3>();  // a sheet, which the reference does not have
     return reference.has_patches() ? reference.onto_patch(p, pair.first, pair.second, number, max_distance)
                                    : reference.project(p, pair.first, pair.second, max_distance);
   };
@@ -77,7 +86,21 @@ SurfaceToFollow follow_interfaces(const TetMesh& mesh) {
   surface.onto_crease = [tree, crease](const Vec3& p, double max_distance) {
     return tree->nearest(p, crease, max_distance);
   };
+  surface.onto_sheet_curve = surface.onto_crease;
   return surface;
+}
+
+void follow_sheets(SurfaceToFollow& surface, const TetMesh& mesh) {
+  TetMesh sheets;
+  sheets.interfaces = sheets_of(mesh);
+  if (sheets.interfaces.empty()) return;
+  sheets.points = mesh.points;
+  const SurfaceToFollow own = follow_interfaces(sheets);
+  surface.onto_patch = [others = surface.onto_patch, sheet = own.onto_patch](
+                           const Vec3& p, const InterfacePatch& patch, double max_distance) {
+    return (patch.first.first == patch.first.second ? sheet : others)(p, patch, max_distance);
+  };
+  surface.onto_sheet_curve = own.onto_sheet_curve;
 }
 
 double min_scaled_jacobian(const std::array<Vec3, 4>& corners, const std::array<Vec3, 6>& midside) {
@@ -124,9 +147,10 @@ CurvingReport curve_midside_nodes(const TetMesh& mesh, const SurfaceToFollow& su
     ++report.edges;
     const Vec3& middle = nodes.points[node];
     const double reach = max_move * (mesh.points[edge[1]] - mesh.points[edge[0]]).norm();
+    const auto& onto_curve = has_sheet(at) ? surface.onto_sheet_curve : surface.onto_crease;
     const std::optional<Vec3> onto = is_smooth(at) ? surface.onto_patch(middle, at.begin()->first, reach)
-                                     : surface.onto_crease ? surface.onto_crease(middle, reach)
-                                                           : std::nullopt;
+                                     : onto_curve  ? onto_curve(middle, reach)
+                                                   : std::nullopt;
     if (!onto || (*onto - middle).norm() > reach) continue;
     target[node] = *onto;
     share[node] = 0;

@@ -200,16 +200,26 @@ std::size_t renew_interfaces(TetMesh& mesh) {
   };
   const std::map<InterfacePatch, SurfaceRegion> groups = std::move(mesh.patch_groups);
   std::size_t lost = 0;
+  std::vector<InterfaceTriangle> sheets = sheets_of(mesh);
   for (const InterfaceTriangle& t : mesh.interfaces) {
-    if (t.patch == 0) continue;
+    if (t.patch == 0 || t.is_sheet()) continue;
     // Both copies of a merged face may have a patch.
     const InterfacePatch own{t.pair(), t.patch};
     const auto [known, added] = before.emplace(key(t.ids), own);
     lost += !added && known->second != own && groups.contains(own);
   }
-  mesh.interfaces.clear();
   mesh.patch_groups.clear();
-  if (before.empty()) return lost;
+  mesh.interfaces = std::move(sheets);
+  const std::vector<std::size_t> misplaced = misplaced_sheet_faces(mesh);
+  for (auto i = misplaced.rbegin(); i != misplaced.rend(); ++i)
+    mesh.interfaces.erase(mesh.interfaces.begin() + static_cast<std::ptrdiff_t>(*i));
+  lost += misplaced.size();
+  sheets = std::move(mesh.interfaces);
+  for (const InterfaceTriangle& t : sheets)
+    if (const auto group = groups.find({t.pair(), t.patch}); group != groups.end())
+      mesh.patch_groups.insert(*group);
+  mesh.interfaces.clear();
+  if (before.empty() && sheets.empty()) return lost;
   mesh.interfaces = find_interfaces(mesh);
   // Boundary faces may have become interface faces, next to patches with the same number.
   std::map<std::pair<InterfacePatch, InterfacePatch>, std::uint16_t> numbers;
@@ -232,6 +242,7 @@ std::size_t renew_interfaces(TetMesh& mesh) {
       mesh.patch_groups[{t.pair(), t.patch}] = group->second;
     before.erase(known);
   }
+  append_sheets(mesh.interfaces, std::move(sheets));
   return lost + before.size();
 }
 

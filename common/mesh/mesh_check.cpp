@@ -104,7 +104,17 @@ class Checker {
       return i < chains.touching_points.size() ? point_place(chains.touching_points[i]) : MeshPlace();
     });
     check_stars(faces);
-    if (options_.self_intersections) check_self_intersections(boundary_and_interfaces(mesh_, faces));
+    const std::vector<std::size_t> misplaced = misplaced_sheet_faces(mesh_);
+    if (options_.self_intersections) {
+      std::vector<Triangle> surface = boundary_and_interfaces(mesh_, faces);
+      if (misplaced.empty())
+        for (const InterfaceTriangle& t : sheets_of(mesh_)) surface.push_back(t.ids);
+      check_self_intersections(surface);
+    }
+    add(DiagnosticCode::sheet_faces_misplaced, misplaced.size(), [&](std::size_t i) {
+      const Triangle& ids = mesh_.interfaces[misplaced[i]].ids;
+      return place("face " + numbers(ids), ids);
+    });
   }
 
   std::vector<MeshFinding> findings() { return std::move(findings_); }

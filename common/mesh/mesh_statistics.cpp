@@ -98,6 +98,8 @@ void count_interfaces(const TetMesh& mesh, MeshStatistics& out) {
       out.interfaces[pair].triangles += statistics.triangles;
       out.interfaces[pair].area += statistics.area;
     }
+  std::erase_if(out.interfaces, [](const auto& known) { return known.first.first == known.first.second; });
+  out.sheets = sheet_statistics(mesh);
   parallel_sort(edges);
   for (std::size_t i = 0; i + 2 < edges.size(); ++i)
     out.junction_edges += edges[i] == edges[i + 2] && (i == 0 || edges[i - 1] != edges[i]);

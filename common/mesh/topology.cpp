@@ -153,6 +153,7 @@ std::vector<std::pair<std::string, std::string>> parts(const Topology& t) {
   for (const auto& [tag, solid] : t.materials) add_solid("material " + std::to_string(tag), solid);
   for (const auto& [pair, surface] : t.interfaces)
     out.emplace_back("interface " + pair_name(pair), text(surface));
+  for (const auto& [name, sheet] : t.sheets) out.emplace_back("sheet " + name, text(sheet));
   if (t.touching_fans)
     out.emplace_back("interfaces touch at points", "count " + std::to_string(*t.touching_fans));
   if (t.junction_curves)
@@ -213,6 +214,8 @@ Topology topology(const TetMesh& mesh, const std::vector<MeshFace>& faces) {
   };
   out.domain = solid(count_components(mesh, faces, nullptr, 0)[0],
                      points.domain - edges.domain + face_counts.domain - tet_counts.domain, outer);
+  for (const SheetStatistics& s : sheet_statistics(mesh))
+    out.sheets[s.name] = {static_cast<Topology::Count>(s.pieces), static_cast<Topology::Count>(s.euler)};
   if (materials < 2) return out;
   const std::vector<Topology::Count> components = count_components(mesh, faces, &ranks.of_tet, materials);
   for (std::size_t m = 0; m < materials; ++m)

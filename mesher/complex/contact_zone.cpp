@@ -26,6 +26,33 @@ std::uint64_t leaf_of(const std::array<int, 3>& v) {
   return morton_encode({v[0] >> 3, v[1] >> 3, v[2] >> 3});
 }
 
+/// Calls `visit(key)` with the Morton key of each voxel that contains a point within `reach` of the triangle,
+/// and of some next to these.
+template <class Visit>
+void for_voxels_near(const std::array<Vec3, 3>& triangle, const std::array<int, 3>& cells, double reach,
+                     const Visit& visit) {
+  Box3 box;
+  for (const Vec3& p : triangle) box.add(p);
+  std::array<int, 3> low, high;
+  for (int a = 0; a < 3; ++a) {
+    const auto k = static_cast<std::size_t>(a);
+    low[k] = std::max(0, static_cast<int>(std::floor(box.low[a] - reach)));
+    high[k] = std::min(cells[k], static_cast<int>(std::floor(box.high[a] + reach)));
+  }
+  const TriangleDistance distance(triangle[0], triangle[1], triangle[2]);
+  const double limit = (reach + half_cube_diagonal) * (reach + half_cube_diagonal);
+  for (int z = low[2]; z <= high[2]; ++z)
+    for (int y = low[1]; y <= high[1]; ++y)
+      for (int x = low[0]; x <= high[0]; ++x)
+        if (distance.squared(Vec3(x + 0.5, y + 0.5, z + 0.5), limit) < limit) visit(morton_encode({x, y, z}));
+}
+
+/// The unit direction away from a surface at its nearest point.
+ContactZone::Distance away_from(const Vec3& away, double length, const Vec3& normal) {
+  if (length > tolerance::smallest_distance) return {length, away / length};
+  return {tolerance::smallest_distance, normal};
+}
+
 }  // namespace
 
 ContactZone::ContactZone(const LabelledComplex& complex, const GridFrame& voxels) {
@@ -49,6 +76,12 @@ ContactZone::ContactZone(const LabelledComplex& complex, const GridFrame& voxels
   faces_.reserve(order.size());
   for (const Index i : order) faces_.push_back(faces[i]);
 
+  add_junctions(complex, points, voxels.cells);
+  add_narrow_parts(voxels.cells);
+}
+
+void ContactZone::add_junctions(const LabelledComplex& complex, const std::vector<Vec3>& points,
+                                const std::array<int, 3>& cells) {
   std::vector<std::array<Vec3, 3>> sources;
   for (Index f = 0; f < complex.faces.size(); ++f)
     if (const Triangle& t = complex.faces[f].ids; complex.is_contact(f))
@@ -57,32 +90,57 @@ ContactZone::ContactZone(const LabelledComplex& complex, const GridFrame& voxels
   std::vector<std::uint64_t> keys = parallel_collect<std::uint64_t>(
       0, sources.size(), ComplexGrains::divided,
       [&](std::size_t begin, std::size_t end, std::vector<std::uint64_t>& out) {
-        for (std::size_t i = begin; i < end; ++i) add_voxels(sources[i], voxels.cells, out);
+        for (std::size_t i = begin; i < end; ++i)
+          for_voxels_near(sources[i], cells, Zone::reach, [&](std::uint64_t key) { out.push_back(key); });
       });
   parallel_sort_unique(keys);
+  add(keys);
+}
+
+/// Adds voxels in which faces of two pairs of regions are so close to each other that the region between them
+/// may have to give way.
+void ContactZone::add_narrow_parts(const std::array<int, 3>& cells) {
+  struct Mark {
+    std::uint64_t key;
+    std::pair<RegionIndex, RegionIndex> pair;
+    auto operator<=>(const Mark&) const = default;
+  };
+  std::vector<Mark> marks = parallel_collect<Mark>(
+      0, faces_.size(), ComplexGrains::divided,
+      [&](std::size_t begin, std::size_t end, std::vector<Mark>& out) {
+        for (std::size_t i = begin; i < end; ++i)
+          if (const Face& f = faces_[i]; faces_another_pair(f))
+            for_voxels_near(f.corners, cells, Zone::min_thickness, [&](std::uint64_t key) {
+              out.push_back({key, f.pair()});
+            });
+      });
+  parallel_sort_unique(marks);
+  std::vector<std::uint64_t> keys;
+  for (std::size_t i = 1; i < marks.size(); ++i)
+    if (marks[i].key == marks[i - 1].key) keys.push_back(marks[i].key);
+  add(keys);
+}
+
+/// Whether a face of another pair of regions is near, which has a region in common with this one.
+bool ContactZone::faces_another_pair(const Face& face) const {
+  Box3 box;
+  for (const Vec3& p : face.corners) box.add(p);
+  box.low -= Vec3::Constant(Zone::min_thickness);
+  box.high += Vec3::Constant(Zone::min_thickness);
+  bool found = false;
+  tree_.for_each_in([&](const Box3& other) { return !found && other.intersects(box); },
+                    [&](std::size_t i) {
+                      const Face& o = faces_[i];
+                      found |= o.pair() != face.pair() && (o.bounds(face.behind) || o.bounds(face.front));
+                    });
+  return found;
+}
+
+void ContactZone::add(const std::vector<std::uint64_t>& keys) {
   for (const std::uint64_t key : keys) {
     const std::array<int, 3> v = morton_decode(key);
     leaves_[leaf_of(v)].set(in_leaf(v));
   }
-}
-
-void ContactZone::add_voxels(const std::array<Vec3, 3>& triangle, const std::array<int, 3>& cells,
-                             std::vector<std::uint64_t>& keys) const {
-  Box3 box;
-  for (const Vec3& p : triangle) box.add(p);
-  std::array<int, 3> low, high;
-  for (int a = 0; a < 3; ++a) {
-    const auto k = static_cast<std::size_t>(a);
-    low[k] = std::max(0, static_cast<int>(std::floor(box.low[a] - Zone::reach)));
-    high[k] = std::min(cells[k], static_cast<int>(std::floor(box.high[a] + Zone::reach)));
-  }
-  const TriangleDistance distance(triangle[0], triangle[1], triangle[2]);
-  constexpr double limit = (Zone::reach + half_cube_diagonal) * (Zone::reach + half_cube_diagonal);
-  for (int z = low[2]; z <= high[2]; ++z)
-    for (int y = low[1]; y <= high[1]; ++y)
-      for (int x = low[0]; x <= high[0]; ++x)
-        if (distance.squared(Vec3(x + 0.5, y + 0.5, z + 0.5), limit) < limit)
-          keys.push_back(morton_encode({x, y, z}));
 }
 
 bool ContactZone::contains(const Vec3& point) const {
@@ -96,6 +154,7 @@ bool ContactZone::contains(const Vec3& point) const {
 ContactZone::Nearest ContactZone::nearest(const Vec3& point) const {
   std::size_t nearest = faces_.size();
   double squared_distance = HUGE_VAL, alignment = 0, side = 0;
+  Vec3 from_nearest = Vec3::Zero();
   tree_.nearest(point, squared_distance, tree_.all(), [&](std::size_t i, double best) {
     const Face& f = faces_[i];
     const Vec3 away = point - closest_point(point, f.corners[0], f.corners[1], f.corners[2]);
@@ -111,12 +170,45 @@ ContactZone::Nearest ContactZone::nearest(const Vec3& point) const {
     squared_distance = std::min(squared_distance, squared);
     alignment = std::abs(along);
     side = along;
+    from_nearest = away;
     return squared_distance * (1 + Zone::tie);
   });
   const Face& f = faces_[nearest];
   const bool in_front = side > 0;
   return {in_front ? f.front : f.behind, in_front ? f.behind : f.front,
-          std::max(std::sqrt(squared_distance), tolerance::smallest_distance)};
+          away_from(from_nearest, std::sqrt(squared_distance), in_front ? f.normal : Vec3(-f.normal))};
+}
+
+std::optional<ContactZone::Narrow> ContactZone::narrow(const Vec3& point, const Nearest& at) const {
+  const Face* farther = nullptr;
+  Vec3 away = Vec3::Zero();
+  const double limit = Zone::widest_narrow - at.distance.value;
+  if (!(limit > 0)) return {};
+  tree_.nearest(point, limit * limit, tree_.all(), [&](std::size_t i, double best) {
+    const Face& f = faces_[i];
+    if (!f.bounds(at.region) || f.across(at.region) == at.across) return best;
+    const Vec3 d = point - closest_point(point, f.corners[0], f.corners[1], f.corners[2]);
+    const double squared = d.squaredNorm();
+    if (squared >= best) return best;
+    farther = &f;
+    away = d;
+    return squared;
+  });
+  if (!farther) return {};
+  const Distance distance =
+      away_from(away, away.norm(), farther->front == at.region ? farther->normal : Vec3(-farther->normal));
+  const double cosine = distance.gradient.dot(at.distance.gradient);
+  if (cosine > Zone::facing) return {};
+  const double thickness = at.distance.value + distance.value;
+  const double share = std::min(1.0, (Zone::facing - cosine) / (Zone::facing - Zone::facing_entirely));
+  const double smallest =
+      share * (at.region == outside_region ? Zone::min_thickness : Zone::min_refined_thickness);
+  return Narrow{farther->across(at.region),
+                distance,
+                thickness,
+                cosine,
+                Zone::slope * std::max(0.0, smallest - thickness),
+                -Zone::slope * (at.distance.gradient + distance.gradient)};
 }
 
 std::optional<ContactZone::Distance> ContactZone::distance(const Vec3& point, RegionIndex region) const {
@@ -134,10 +226,7 @@ std::optional<ContactZone::Distance> ContactZone::distance(const Vec3& point, Re
     return squared;
   });
   if (!nearest) return {};
-  const double value = away.norm();
-  if (value > tolerance::smallest_distance) return Distance{value, away / value};
-  return Distance{tolerance::smallest_distance,
-                  nearest->front == region ? Vec3(-nearest->normal) : nearest->normal};
+  return away_from(away, away.norm(), nearest->front == region ? Vec3(-nearest->normal) : nearest->normal);
 }
 
 }  // namespace tetwright

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bitset>
 #include <cstdint>
 #include <optional>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "common/geometry/box_tree.h"
@@ -16,17 +18,28 @@ namespace tetwright {
 
 /// Regions and distances around the contacts and junctions of a complex, computed from its triangles: a point
 /// belongs to the region on its side of the nearest triangle, so that no gap opens between bodies that share
-/// a sheet. Voxel coordinates; immutable, all functions may be called concurrently.
+/// a sheet. Where a region is thinner than a cell between two others, it gives way to one of them (Narrow).
+/// Voxel coordinates; immutable, all functions may be called concurrently.
 class ContactZone {
  public:
-  /// Regions at the complex's nearest triangle.
-  struct Nearest {
-    RegionIndex region, across;  ///< on the point's side, and on the other; numbers of the complex
-    double distance;
-  };
   struct Distance {
     double value;   ///< unsigned
     Vec3 gradient;  ///< unit, away from the surface
+  };
+  /// The complex's nearest triangle.
+  struct Nearest {
+    RegionIndex region, across;  ///< on the point's side, and on the other; numbers of the complex
+    Distance distance;
+  };
+  /// A part of a region between two others that face each other.
+  struct Narrow {
+    RegionIndex across;  ///< on the farther side
+    Distance distance;   ///< of the farther side
+    double thickness;    ///< sum of the distances of both sides
+    double cosine;       ///< between the gradients of both distances
+    /// By how much the region gives way: 0 where it is thick enough, and growing continuously.
+    double deficit;
+    Vec3 slope;  ///< gradient of the deficit
   };
 
   ContactZone(const LabelledComplex& complex, const GridFrame& voxels);
@@ -35,21 +48,34 @@ class ContactZone {
   bool contains(const Vec3& point) const;
   /// \pre contains(point)
   Nearest nearest(const Vec3& point) const;
+  /// The narrow part of a region that holds the point, or nothing if no third region is near or does not face
+  /// the nearest triangle.
+  /// \param at nearest(point)
+  std::optional<Narrow> narrow(const Vec3& point, const Nearest& at) const;
   /// Distance from the boundary of a region; nothing beyond the band.
   std::optional<Distance> distance(const Vec3& point, RegionIndex region) const;
 
  private:
   using Mask = std::bitset<512>;
 
-  void add_voxels(const std::array<Vec3, 3>& triangle, const std::array<int, 3>& cells,
-                  std::vector<std::uint64_t>& keys) const;
-
-  BoxTree tree_;
   struct Face {
     std::array<Vec3, 3> corners;
     Vec3 normal;  ///< unit
     RegionIndex behind, front;
+
+    bool bounds(RegionIndex region) const { return behind == region || front == region; }
+    RegionIndex across(RegionIndex region) const { return behind == region ? front : behind; }
+    /// Ascending.
+    std::pair<RegionIndex, RegionIndex> pair() const { return std::minmax(behind, front); }
   };
+
+  void add_junctions(const LabelledComplex& complex, const std::vector<Vec3>& points,
+                     const std::array<int, 3>& cells);
+  void add_narrow_parts(const std::array<int, 3>& cells);
+  bool faces_another_pair(const Face& face) const;
+  void add(const std::vector<std::uint64_t>& keys);
+
+  BoxTree tree_;
   std::vector<Face> faces_;  ///< in the order of the tree
   std::unordered_map<std::uint64_t, Mask> leaves_;
 };

@@ -35,14 +35,20 @@ struct Use {
 class ComplexBuilder {
  public:
   ComplexBuilder(const ImprintedSurfaces& imprinted, const SurfaceSoup& soup, std::size_t bodies,
-                 double tolerance, const SoupSheets& sheets)
-      : imprinted_(imprinted), soup_(soup), bodies_(bodies), tolerance_(tolerance), sheets_(sheets) {}
+                 double tolerance, OverlapRule rule, const SoupSheets& sheets)
+      : imprinted_(imprinted),
+        soup_(soup),
+        bodies_(bodies),
+        tolerance_(tolerance),
+        rule_(rule),
+        sheets_(sheets) {}
 
   ComplexResult build() {
     weld();
     find_windings();
-    label_cells();
+    measure_cells();
     find_overlaps();
+    label_cells();
     dissolve_thin_cells();
     assemble();
     return std::move(result_);
@@ -155,11 +161,7 @@ class ComplexBuilder {
     }
   }
 
-  void label_cells() {
-    labels_.assign(cells_.count, outside_region);
-    for (Index c = 0; c < cells_.count; ++c)
-      for (std::size_t b = 0; b < bodies_; ++b)
-        if (windings_[c][b] > 0) labels_[c] = static_cast<RegionIndex>(b + 1);
+  void measure_cells() {
     volumes_.assign(cells_.count, 0);
     areas_.assign(cells_.count, 0);
     places_.assign(cells_.count, Vec3::Zero());
@@ -206,6 +208,38 @@ class ComplexBuilder {
     }
   }
 
+  bool cross(std::size_t a, std::size_t b) const {
+    return std::any_of(result_.overlaps.begin(), result_.overlaps.end(),
+                       [&](const BodyOverlap& o) { return o.first == a && o.second == b; });
+  }
+
+  /// The bodies that have a cell, ascending: more than one only with OverlapRule::material.
+  std::vector<std::size_t> owners(Index cell) const {
+    std::vector<std::size_t> owners;
+    for (std::size_t b = 0; b < bodies_; ++b) {
+      if (windings_[cell][b] <= 0) continue;
+      const auto crosses = [&](std::size_t a) { return cross(a, b); };
+      if (rule_ == OverlapRule::first && std::any_of(owners.begin(), owners.end(), crosses)) continue;
+      std::erase_if(owners, [&](std::size_t a) { return rule_ != OverlapRule::material || !crosses(a); });
+      owners.push_back(b);
+    }
+    return owners;
+  }
+
+  void label_cells() {
+    labels_.assign(cells_.count, outside_region);
+    std::map<std::vector<std::size_t>, RegionIndex> common;
+    for (Index c = 0; c < cells_.count; ++c) {
+      const std::vector<std::size_t> owners = this->owners(c);
+      if (owners.size() == 1) labels_[c] = static_cast<RegionIndex>(owners[0] + 1);
+      if (owners.size() < 2) continue;
+      const auto [known, is_new] =
+          common.try_emplace(owners, static_cast<RegionIndex>(bodies_ + 1 + result_.common.size()));
+      if (is_new) result_.common.push_back(owners);
+      labels_[c] = known->second;
+    }
+  }
+
   /// Gives cells that are thinner than the tolerance to the neighbour with the largest common area.
   void dissolve_thin_cells() {
     std::map<Index, std::map<RegionIndex, double>> beside;
@@ -227,25 +261,46 @@ class ComplexBuilder {
     }
   }
 
+  /// Whether a body contains a cell that it does not lose to an earlier one (OverlapRule::first).
+  bool keeps(std::size_t body, Index cell) const {
+    if (windings_[cell][body] <= 0) return false;
+    for (std::size_t a = 0; a < body; ++a)
+      if (windings_[cell][a] > 0 && cross(a, body)) return false;
+    return true;
+  }
+
   void assemble() {
     LabelledComplex& out = result_.complex;
-    result_.body_triangles.resize(bodies_);
-    result_.body_sources.resize(bodies_);
-    result_.lost.assign(bodies_, 1);
+    const std::size_t surfaces = bodies_ + result_.common.size();
+    result_.body_triangles.resize(surfaces);
+    result_.body_sources.resize(surfaces);
+    result_.lost.assign(surfaces, 1);
+    const auto add_triangle = [&](std::size_t body, Triangle ids, bool turned, Index source) {
+      if (turned) std::swap(ids[1], ids[2]);
+      result_.body_triangles[body].push_back(ids);
+      result_.body_sources[body].push_back(source);
+    };
     out.points = imprinted_.points;
     out.starts_.push_back(0);
     for (Index t = 0; t < welded_.size(); ++t) {
       const std::size_t first = out.sources_.size();
+      const auto [back_cell, front_cell] = cells_.sides[t];
+      const RegionIndex behind = labels_[back_cell], front = labels_[front_cell];
       for (const Use& u : uses(t)) {
         if (is_sheet(u)) continue;
-        Triangle ids = welded_[t].ids;
-        if (u.turned) std::swap(ids[1], ids[2]);
+        if (rule_ == OverlapRule::first && keeps(u.body, back_cell) == keeps(u.body, front_cell)) continue;
         out.sources_.push_back({u.body, static_cast<Index>(result_.body_triangles[u.body].size()), u.turned});
-        result_.body_triangles[u.body].push_back(ids);
-        result_.body_sources[u.body].push_back(u.source);
+        add_triangle(u.body, welded_[t].ids, u.turned, u.source);
       }
-      const RegionIndex behind = labels_[cells_.sides[t][0]], front = labels_[cells_.sides[t][1]];
       add_sheet(t, behind, front);
+      // What an earlier body keeps bounds the later one, too.
+      for (std::size_t b = 0; b < bodies_ && rule_ == OverlapRule::first; ++b)
+        if (windings_[back_cell][b] > 0 && windings_[front_cell][b] > 0 &&
+            keeps(b, back_cell) != keeps(b, front_cell))
+          add_triangle(b, welded_[t].ids, keeps(b, front_cell), no_index);
+      for (std::size_t b = bodies_; b < surfaces; ++b)
+        if (const auto own = static_cast<RegionIndex>(b + 1); (behind == own) != (front == own))
+          add_triangle(b, welded_[t].ids, front == own, no_index);
       if (behind == front) {
         out.sources_.resize(first);
         continue;
@@ -275,6 +330,7 @@ class ComplexBuilder {
       const auto sheet_face = [&](std::size_t k) {
         return static_cast<Index>(edges[k].triangle - out.faces.size());
       };
+      if (sheets > 0) find_meeting(edges, j - sheets, j);
       if (sheets == 2 && part_of_[sheet_face(j - 2)] == part_of_[sheet_face(j - 1)])
         components.unite(sheet_face(j - 2), sheet_face(j - 1));
     }
@@ -284,6 +340,21 @@ class ComplexBuilder {
       if (root == f) number[f] = out.sheet_components++;
       out.sheets[f].component = number[root];
     }
+  }
+
+  /// Notes that an edge is in more sheets than one.
+  void find_meeting(const std::vector<EdgeUse>& edges, std::size_t begin, std::size_t end) {
+    const LabelledComplex& out = result_.complex;
+    const auto face = [&](std::size_t k) { return edges[k].triangle - out.faces.size(); };
+    if (result_.sheets_meet || end - begin < 2) return;
+    if (end - begin == 2 && part_of_[face(begin)] == part_of_[face(begin + 1)]) return;
+    std::uint32_t low = out.sheets[face(begin)].sheet, high = low;
+    for (std::size_t k = begin; k < end; ++k) {
+      low = std::min(low, out.sheets[face(k)].sheet);
+      high = std::max(high, out.sheets[face(k)].sheet);
+    }
+    const auto [p, q] = ends_of(edges[begin].key);
+    result_.sheets_meet = {low, high, (at(p) + at(q)) / 2};
   }
 
   /// Adds a triangle of a sheet unless it is outside or on a face.
@@ -313,6 +384,19 @@ class ComplexBuilder {
     part_of_.push_back(first->body);
   }
 
+  /// Measures how far a body's surface has moved to a contact: outwards over a gap, inwards over an overlap.
+  void measure_gap(const LabelledComplex::Source& source, const Triangle& face, BodyContact& contact) const {
+    const Triangle& original = soup_.triangles[result_.body_sources[source.body][source.triangle]];
+    const Vec3& corner = soup_.points[original[0]];
+    const Vec3 normal = (soup_.points[original[1]] - corner).cross(soup_.points[original[2]] - corner);
+    for (const Index p : face) {
+      const double moved = normal.dot(at(p) - corner) / normal.norm();
+      if (std::abs(moved) < ComplexTuning::Contact::min_gap * tolerance_) continue;
+      contact.largest_gap = std::max(contact.largest_gap, moved);
+      contact.largest_overlap = std::max(contact.largest_overlap, -moved);
+    }
+  }
+
   void find_contacts() {
     const LabelledComplex& complex = result_.complex;
     std::map<std::pair<std::size_t, std::size_t>, std::vector<Index>> faces;
@@ -327,8 +411,7 @@ class ComplexBuilder {
       for (const Index f : list) {
         triangles.push_back(complex.faces[f].ids);
         contact.area += area_vector(triangles.back()).norm();
-        for (const Index p : triangles.back())
-          contact.largest_gap = std::max(contact.largest_gap, imprinted_.gap[p]);
+        for (const LabelledComplex::Source& s : complex.sources(f)) measure_gap(s, triangles.back(), contact);
       }
       DisjointSets sets(list.size());
       const std::vector<EdgeUse> edges = edge_uses(triangles, {});
@@ -343,6 +426,7 @@ class ComplexBuilder {
   const SurfaceSoup& soup_;
   std::size_t bodies_;
   double tolerance_;
+  OverlapRule rule_;
   const SoupSheets& sheets_;
   ComplexResult result_;
   std::vector<std::uint32_t> part_of_;  ///< surface of the soup of each face of a sheet
@@ -356,8 +440,8 @@ class ComplexBuilder {
 };
 
 ComplexResult build_complex(const ImprintedSurfaces& imprinted, const SurfaceSoup& soup, std::size_t bodies,
-                            double tolerance, const SoupSheets& sheets) {
-  return ComplexBuilder(imprinted, soup, bodies, tolerance, sheets).build();
+                            double tolerance, OverlapRule rule, const SoupSheets& sheets) {
+  return ComplexBuilder(imprinted, soup, bodies, tolerance, rule, sheets).build();
 }
 
 }  // namespace tetwright

@@ -15,7 +15,8 @@ namespace tetwright {
 /// All surfaces of an input as one complex of triangles, each with the region on either side. Two triangles
 /// share points or an edge, or are apart; a contact is one sheet that both bodies share.
 ///
-/// Regions are numbered by body: 0 is the outside, b + 1 is body b. Immutable; input units.
+/// Regions are numbered by body: 0 is the outside, b + 1 is body b. With OverlapRule::material those of
+/// volumes that several bodies claim follow. Immutable; input units.
 class LabelledComplex {
  public:
   /// The part of a body's surface that a triangle is.
@@ -72,10 +73,11 @@ struct BodyOverlap {
 
 /// The faces that two bodies share.
 struct BodyContact {
-  std::size_t first, second;  ///< bodies, ascending
-  double area = 0;            ///< input units squared
-  std::size_t pieces = 0;     ///< connected by edges
-  double largest_gap = 0;     ///< closed by imprinting, input units
+  std::size_t first, second;   ///< bodies, ascending
+  double area = 0;             ///< input units squared
+  std::size_t pieces = 0;      ///< connected by edges
+  double largest_gap = 0;      ///< closed by imprinting, input units
+  double largest_overlap = 0;  ///< likewise
 };
 
 /// Triangles of sheets that are in no sheet of the complex.
@@ -98,18 +100,28 @@ struct SheetFate {
   SheetLoss repeated;  ///< on another sheet
 };
 
+/// Where sheets cross, branch, or share a border.
+struct SheetMeeting {
+  std::uint32_t first, second;  ///< sheets; may be the same one
+  Vec3 place;                   ///< input units
+};
+
 struct ComplexResult {
   LabelledComplex complex;
-  /// Each body's own surface as it is in the complex, before later bodies carve it; triangles as counted by
-  /// LabelledComplex::Source.
+  /// Each body's own surface as it is in the complex, before later bodies carve it, but without what earlier
+  /// ones keep (OverlapRule::first); triangles as counted by LabelledComplex::Source. Common volumes follow.
   std::vector<std::vector<Triangle>> body_triangles;
-  /// For each of them, the triangle of the body's surface before imprinting.
+  /// For each of them, the triangle of the soup that it is a part of, or no_index if the body's own surface
+  /// does not run there.
   std::vector<std::vector<Index>> body_sources;
+  /// The bodies, ascending, that claim each common volume; with OverlapRule::material.
+  std::vector<std::vector<std::size_t>> common;
   std::vector<BodyOverlap> overlaps;  ///< by pair
   std::vector<BodyContact> contacts;  ///< by pair
   std::vector<char> lost;             ///< by body: nothing of it is left after carving
   std::optional<Vec3> inconsistent;   ///< a point where the cells contradict the bodies' orientation
   std::vector<SheetFate> sheets;      ///< by sheet
+  std::optional<SheetMeeting> sheets_meet;
 };
 
 /// The sheets among imprinted surfaces: those after the bodies.
@@ -119,11 +131,12 @@ struct SoupSheets {
 };
 
 /// Builds the complex of closed bodies from their imprinted surfaces. A point belongs to the last body that
-/// contains it (positive winding number).
+/// contains it (positive winding number); among bodies that cross, the rule decides.
 /// \param soup what was imprinted; surfaces are bodies
 /// \param bodies number of bodies; surfaces of the soup from there on are open sheets
 /// \param sheets of the soup
 ComplexResult build_complex(const ImprintedSurfaces& imprinted, const SurfaceSoup& soup, std::size_t bodies,
-                            double tolerance, const SoupSheets& sheets = {});
+                            double tolerance, OverlapRule rule = OverlapRule::later,
+                            const SoupSheets& sheets = {});
 
 }  // namespace tetwright

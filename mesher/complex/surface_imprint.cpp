@@ -27,7 +27,6 @@ class Imprinter : private ImprintState {
   Imprinter(const SurfaceSoup& soup, double tolerance, Progress* progress)
       : ImprintState(tolerance), progress_(progress) {
     points_ = soup.points;
-    result_.gap.assign(soup.points.size(), 0);
     owner_.assign(soup.points.size(), 0);
     for (Index t = 0; t < soup.triangles.size(); ++t) {
       triangles_.push_back({soup.triangles[t], t, soup.surface[t], true});
@@ -84,8 +83,6 @@ class Imprinter : private ImprintState {
 
   Vec3 place_of(const Event& e) const { return e.point != no_index ? at(e.point) : at(e.first[0]); }
 
-  void note_gap(Index p, double gap) { result_.gap[p] = std::max(result_.gap[p], gap); }
-
   /// Merges points; each group takes the position of its earliest surface's point.
   void merge(const std::vector<Event>& events) {
     DisjointSets sets(points_.size());
@@ -103,12 +100,7 @@ class Imprinter : private ImprintState {
     for (Index p = 0; p < best.size(); ++p)
       if (Index& of_group = best[sets.root(p)]; earlier(p, of_group)) of_group = p;
     for (Part& t : triangles_)
-      for (Index& p : t.ids) {
-        const Index kept = best[sets.root(p)];
-        if (kept == p) continue;
-        note_gap(kept, std::max((at(kept) - at(p)).norm(), result_.gap[p]));
-        p = kept;
-      }
+      for (Index& p : t.ids) p = best[sets.root(p)];
     drop_collapsed();
   }
 
@@ -192,7 +184,6 @@ class Imprinter : private ImprintState {
       if (const Index known = grid.find(place); known != no_index) return known;
       const auto added = static_cast<Index>(points_.size());
       points_.push_back(place);
-      result_.gap.push_back(0);
       owner_.push_back(owner);
       grid.add(added);
       return added;
@@ -204,7 +195,6 @@ class Imprinter : private ImprintState {
         case Event::Kind::point_on_edge: {
           const auto [share, squared] = foot_on(at(e.point), at(e.first[0]), at(e.first[1]));
           if (squared > Imprint::moved_away * squared_) break;  // by another event
-          note_gap(e.point, std::sqrt(squared));
           if (e.owner < owner_[e.point]) {
             points_[e.point] = at(e.first[0]) + share * (at(e.first[1]) - at(e.first[0]));
             owner_[e.point] = e.owner;
@@ -216,7 +206,6 @@ class Imprinter : private ImprintState {
           const Triangle& t = triangles_[e.other].ids;
           const Vec3 &x = at(t[0]), normal = (at(t[1]) - x).cross(at(t[2]) - x);
           const Vec3 step = normal * (normal.dot(at(e.point) - x) / normal.squaredNorm());
-          note_gap(e.point, step.norm());
           if (e.owner < owner_[e.point]) {
             points_[e.point] -= step;
             owner_[e.point] = e.owner;
@@ -231,7 +220,6 @@ class Imprinter : private ImprintState {
           const Edge& kept = first ? e.first : e.second;
           const Index p = point_at(at(kept[0]) + (first ? near.s : near.t) * (at(kept[1]) - at(kept[0])),
                                    std::min(e.owner, e.second_owner));
-          note_gap(p, std::sqrt(near.squared));
           put_on_edge(p, e.first);
           put_on_edge(p, e.second);
           break;

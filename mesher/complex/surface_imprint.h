@@ -23,7 +23,6 @@ struct ImprintedSurfaces {
   std::vector<Triangle> triangles;
   std::vector<Index> source;  ///< of each triangle: the triangle of the input that it is a part of
   bool any = false;           ///< whether any two surfaces meet; if not, all is as it was
-  std::vector<double> gap;    ///< of each point: largest distance that was closed there
   /// Where triangles of two surfaces still meet other than in points and edges after the last round.
   std::optional<Vec3> unresolved;
 };

@@ -6,6 +6,7 @@
 
 #include "common/parallel/parallel_sort.h"
 #include "mesher/tuning/distance_tuning.h"
+#include "mesher/tuning/domain_tuning.h"
 
 namespace tetwright {
 
@@ -63,6 +64,8 @@ class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
 
  private:
   std::optional<FieldSheet> thinnest_sheet(const Vec3& point, double reach) override;
+  std::optional<FieldSheet> thinnest_sheet_in_zone(double reach);
+  std::optional<FieldSheet> sheet_here() const;
   void values_and_gradients(const Vec3& point, std::span<const RegionIndex> regions, double* out,
                             Vec3* slopes) override {
     read_gradients(point);
@@ -109,11 +112,34 @@ class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
     if (!in_zone) return;
     place_in_voxels = at;
     here = field.zone()->nearest(at);
+    narrow = field.has_layers() ? std::nullopt : field.zone()->narrow(at, here);
   }
+  /// The signed distance of one of the three regions at a narrow part: the region between them gives way to
+  /// the later one of both others, so that the earlier one's surface stays as it is. The outside comes last.
+  ContactZone::Distance narrow_value(RegionIndex r) const {
+    const ContactZone::Distance &near = here.distance, &far = narrow->distance;
+    const auto negative = [](const ContactZone::Distance& d) {
+      return ContactZone::Distance{-d.value, -d.gradient};
+    };
+    if (r == here.region) return {-near.value + narrow->deficit, -near.gradient + narrow->slope};
+    const bool near_first =
+        narrow->across == outside_region || (here.across != outside_region && here.across < narrow->across);
+    const ContactZone::Distance &first = near_first ? near : far, &later = near_first ? far : near;
+    if (r == (near_first ? here.across : narrow->across)) return first;
+    if (later.value - narrow->deficit < -first.value) return negative(first);
+    return {later.value - narrow->deficit, later.gradient - narrow->slope};
+  }
+  bool gives_way() const { return narrow && narrow->deficit > 0; }
   /// The signed distance of a region in the zone: that of its body, and of the other surfaces by which layers
   /// divide the body.
   double zone_value(RegionIndex r, Vec3* gradient) {
     const LevelSetRegion& region = field.level_set_regions()[r];
+    if (gives_way() && (region.of_complex == here.region || region.of_complex == here.across ||
+                        region.of_complex == narrow->across)) {
+      const ContactZone::Distance d = narrow_value(region.of_complex);
+      if (gradient) *gradient = d.gradient;
+      return per_voxel * d.value;
+    }
     const bool inside = region.of_complex == here.region;
     const auto distance = field.zone()->distance(place_in_voxels, region.of_complex);
     double best = per_voxel * (distance ? distance->value : level_set_band) * (inside ? -1 : 1);
@@ -205,8 +231,8 @@ class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
   }
 
   NearestRegion nearest() {
-    if (in_zone && !field.has_layers())
-      return {here.region, static_cast<float>(std::min(per_voxel * here.distance, field.band()))};
+    if (in_zone && !field.has_layers() && !gives_way())
+      return {here.region, static_cast<float>(std::min(per_voxel * here.distance.value, field.band()))};
     const std::size_t count = field.regions().size();
     RegionIndex best = 0;
     double smallest = value(0), next = HUGE_VAL;
@@ -227,9 +253,10 @@ class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
   double per_voxel;  ///< lattice units
   Vec3 place;        ///< last point read, lattice units
   bool has_gradients = false;
-  bool in_zone = false;  ///< the complex decides at the last point read, with the following two
+  bool in_zone = false;  ///< the complex decides at the last point read, with the following three
   Vec3 place_in_voxels;
   ContactZone::Nearest here{};
+  std::optional<ContactZone::Narrow> narrow;
   std::vector<std::unique_ptr<LevelSetSampler>> readers;
   std::vector<double> distances;
   std::vector<Vec3> gradients;
@@ -359,9 +386,30 @@ std::optional<RegionSet> LevelSetField::Sampler::two_nearest(const Vec3& point) 
   return both;
 }
 
+/// \pre in_zone; reads another point
+std::optional<FieldSheet> LevelSetField::Sampler::thinnest_sheet_in_zone(double reach) {
+  if (here.distance.value > reach / per_voxel) return {};
+  const std::optional<FieldSheet> own = sheet_here();
+  // The point may be beside the sheet.
+  enter_zone(place_in_voxels - (here.distance.value + Sheets::depth) * here.distance.gradient);
+  const std::optional<FieldSheet> across = in_zone ? sheet_here() : std::nullopt;
+  return !own || (across && across->thickness < own->thickness) ? across : own;
+}
+
+std::optional<FieldSheet> LevelSetField::Sampler::sheet_here() const {
+  if (!narrow || here.region == outside_region) return {};
+  if (narrow->cosine <= Sheets::max_cosine) {
+    if (narrow->thickness < Sheets::min_thickness) return {};
+    return FieldSheet{here.region, per_voxel * narrow->thickness, false};
+  }
+  // A wedge, which is thin at its edge in cells of any size: the smallest ones have to do there.
+  constexpr double smallest = Sheets::min_cells / (1 << DomainTuning::Refinement::max_levels);
+  return FieldSheet{here.region, per_voxel * std::max(smallest, narrow->thickness), false};
+}
+
 std::optional<FieldSheet> LevelSetField::Sampler::thinnest_sheet(const Vec3& point, double reach) {
   read_gradients(point);
-  if (in_zone) return {};
+  if (in_zone) return thinnest_sheet_in_zone(reach);
   std::optional<FieldSheet> thinnest;
   for (std::size_t r = 1; r < field.regions().size(); ++r) {
     const auto& terms = field.terms(static_cast<RegionIndex>(r));

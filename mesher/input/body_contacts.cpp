@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -61,8 +62,12 @@ void take_surface(MesherInput::Body& body, const std::vector<Vec3>& points,
     }
     s.triangles.push_back(t);
   }
-  if (!body.surface.groups.empty())
-    for (const Index source : sources) s.groups.push_back(body.surface.groups[source - first_source]);
+  if (!body.surface.groups.empty()) {
+    const auto none = static_cast<std::uint32_t>(body.groups.size());
+    body.groups.emplace_back();
+    for (const Index source : sources)
+      s.groups.push_back(source == no_index ? none : body.surface.groups[source - first_source]);
+  }
   s.closed = s.triangles.size();
   measure_surface(s);
   body.surface = std::move(s);
@@ -79,11 +84,14 @@ void add_overlap(const BodyOverlap& overlap, OverlapRule rule, MesherInput& inpu
                      "the bodies " + names + " cross at " + place_text(overlap.place) +
                          ": both claim a volume of " + volume +
                          "; separate them, or let the later one keep it with --on-overlap later");
-  input.overlaps.push_back({first.name, second.name, overlap.volume, overlap.place});
+  const std::string owner = rule == OverlapRule::later   ? second.name
+                            : rule == OverlapRule::first ? first.name
+                                                         : first.name + "+" + second.name;
+  input.overlaps.push_back({first.name, second.name, overlap.volume, owner, overlap.place});
   input.findings.push_back({.code = DiagnosticCode::bodies_overlap,
                             .file = second.file,
                             .what = "bodies that cross: " + names + " both claim a volume of " + volume,
-                            .done = "it belongs to '" + second.name + "'",
+                            .done = "it belongs to '" + owner + "'",
                             .places = {overlap.place}});
 }
 
@@ -103,6 +111,10 @@ void report_sheets(const std::vector<SheetFate>& fates, MesherInput& input) {
                        name + " lies on the boundary of a body, at " + place_text(fate.on_faces.place) +
                            ", and not inside; to name faces of the boundary, give the body's surface named "
                            "groups");
+    if (fate.kept == 0)
+      throw InputError(sheet.file, 0,
+                       name + " lies on another sheet, at " + place_text(fate.repeated.place) +
+                           "; leave one of them out");
     const auto note = [&](DiagnosticCode code, const SheetLoss& loss, const char* where) {
       if (!(loss.area > 0)) return;
       input.findings.push_back(
@@ -115,6 +127,41 @@ void report_sheets(const std::vector<SheetFate>& fates, MesherInput& input) {
     note(DiagnosticCode::sheet_cut_off, fate.outside, "outside all bodies");
     note(DiagnosticCode::sheet_on_faces, fate.on_faces, "on the boundary of a body");
     note(DiagnosticCode::sheet_on_faces, fate.repeated, "on another sheet");
+  }
+}
+
+/// \throws InputError
+[[noreturn]] void refuse_meeting(const SheetMeeting& meeting, const MesherInput& input) {
+  const std::string first = "'" + input.sheets[meeting.first].group.name + "'",
+                    second = "'" + input.sheets[meeting.second].group.name + "'";
+  throw InputError(input.sheets[meeting.second].file, 0,
+                   (meeting.first == meeting.second ? "the sheet " + first + " branches or crosses itself"
+                                                    : "the sheets " + first + " and " + second + " meet") +
+                       " at " + place_text(meeting.place) +
+                       ", and only sheets that are apart can be meshed; separate them there, or leave one out");
+}
+
+MaterialTag free_tag(const MesherInput& input) {
+  std::set<MaterialTag> used;
+  for (const MesherInput::Body& body : input.bodies) used.insert(body.tag);
+  for (const MaterialLayer& layer : input.layers) used.insert(layer.tag);
+  MaterialTag tag = 1;
+  while (used.contains(tag)) ++tag;
+  return tag;
+}
+
+/// Appends a body for each volume that several bodies have in common.
+void add_common_volumes(const ComplexResult& found, MesherInput& input) {
+  std::set<std::string> names;
+  for (const MesherInput::Body& body : input.bodies) names.insert(body.name);
+  for (const std::vector<std::size_t>& owners : found.common) {
+    std::string name;
+    for (const std::size_t b : owners) name += (name.empty() ? "" : "+") + input.bodies[b].name;
+    const std::string& file = input.bodies[owners.back()].file;
+    if (!names.insert(name).second)
+      throw UsageError("the volume in which bodies cross would be called '" + name +
+                       "' like another body; rename that one, or choose another rule for --on-overlap");
+    input.bodies.push_back({name, free_tag(input), file, {}, {}});
   }
 }
 
@@ -168,7 +215,8 @@ void join_bodies(MesherInput& input, const SheetSoup& sheets, const ContactOptio
                *imprinted.unresolved);
     return;
   }
-  ComplexResult found = build_complex(imprinted, soup, input.bodies.size(), tolerance, in_soup);
+  ComplexResult found =
+      build_complex(imprinted, soup, input.bodies.size(), tolerance, options.overlap, in_soup);
   if (found.inconsistent) {
     not_joined(input.bodies.back().file, "a surface crosses itself there; contacts are accurate to a cell",
                *found.inconsistent);
@@ -177,11 +225,12 @@ void join_bodies(MesherInput& input, const SheetSoup& sheets, const ContactOptio
   // Meshing refuses a body that later ones cover as a whole.
   if (std::count(found.lost.begin(), found.lost.end(), 1) > 0) return;
   report_sheets(found.sheets, input);
+  if (found.sheets_meet) refuse_meeting(*found.sheets_meet, input);
   for (const BodyOverlap& o : found.overlaps) add_overlap(o, options.overlap, input);
+  add_common_volumes(found, input);
   for (const BodyContact& c : found.contacts)
-    input.contacts.push_back(
-        {input.bodies[c.first].name, input.bodies[c.second].name, c.area, c.pieces, c.largest_gap});
-  if (!found.complex.any()) return;
+    input.contacts.push_back({input.bodies[c.first].name, input.bodies[c.second].name, c.area, c.pieces,
+                              c.largest_gap, c.largest_overlap});
   Index first_source = 0;
   for (std::size_t b = 0; b < input.bodies.size(); ++b) {
     const auto count = static_cast<Index>(input.bodies[b].surface.triangles.size());

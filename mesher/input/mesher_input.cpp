@@ -13,6 +13,7 @@
 #include "mesher/input/body_contacts.h"
 #include "mesher/input/qualified_names.h"
 #include "mesher/input/sheet_surfaces.h"
+#include "mesher/input/self_crossings.h"
 #include "mesher/tuning/input_tuning.h"
 #include "tetwright/error.h"
 
@@ -139,6 +140,8 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
   SheetSoup inner;
   for (const SheetSurface& s : sheets.surfaces)
     if (!s.divides) inner.add(s, input.sheets, input.findings);
+  const double tolerance = contact_tolerance(contact, (input.high - input.low).norm());
+  for (MesherInput::Body& body : input.bodies) resolve_self_crossings(body, tolerance, progress);
   join_bodies(input, inner, contact, progress);
   return input;
 }

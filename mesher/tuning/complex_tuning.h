@@ -17,6 +17,8 @@ struct ComplexTuning {
   struct Contact {
     /// Bodies must be larger than this, in tolerances, or little would be left of them.
     static constexpr double min_body = 10;
+    /// Gaps and overlaps below this, in tolerances, are rounding.
+    static constexpr double min_gap = 1e-6;
   };
 
   struct Imprint {
@@ -57,6 +59,19 @@ struct ComplexTuning {
     /// Squared distances that differ by less than this share are equal: rounding of the nearest points of two
     /// triangles with a common edge.
     static constexpr double tie = 1e-9;
+    /// Voxels. A region between two others that is thinner gives way to one of them: one that is thicker has
+    /// a lattice point wherever it lies (as DistanceTuning::Walls::min_shown_cells). Cells are smaller where
+    /// materials are thin, down to an eighth (DomainTuning::Refinement::max_levels).
+    static constexpr double min_thickness = 1.25, min_refined_thickness = min_thickness / 8;
+    /// Distance over which narrow parts are looked for, voxels: that of sheets that need smaller cells
+    /// (DistanceTuning::Sheets::min_cells).
+    static constexpr double widest_narrow = 1.5;
+    /// By how much a region gives way for each voxel that its thickness lacks: larger values make a steeper
+    /// rim, at which the lattice is no more accurate.
+    static constexpr double slope = 3;
+    /// Cosines between gradients. Regions give way between surfaces that face each other at less than 45
+    /// degrees, entirely at less than 37 degrees.
+    static constexpr double facing = -0.7, facing_entirely = -0.8;
   };
 
   /// Where points have a side of a sheet.

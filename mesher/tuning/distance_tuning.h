@@ -51,6 +51,8 @@ struct DistanceTuning {
     /// (voxels) count as one (the guide, Regions). Common faces of bodies are accurate to a few hundredths of
     /// a voxel, near sharp edges to a few tenths, so slivers of another region between them would be noise.
     static constexpr double contact = 0.4, contact_cosine = -0.7;
+    /// Depth below a surface at which the region behind it is looked up, voxels: far below `min_thickness`.
+    static constexpr double depth = 1e-3;
   };
 
   /// Parts reported as too thin.

@@ -12,7 +12,8 @@ namespace tetwright {
 
 /// Tests whether collapsing a star's centre a onto its link point b keeps the topology of every material,
 /// interface and junction curve: Lk(a) ∩ Lk(b) = Lk(ab) in the complexes K, I and J of README.md, Topology
-/// (Dey, Edelsbrunner, Guha & Nekhayev 1999; Thomas & Natarajan 2011). Changes nothing.
+/// (Dey, Edelsbrunner, Guha & Nekhayev 1999; Thomas & Natarajan 2011). The border of a sheet is a junction
+/// curve: its edges have one interface triangle. Changes nothing.
 ///
 /// Reads the stars of a and b. Reuses its memory; one object for each worker.
 class LinkCondition {

@@ -29,6 +29,8 @@ class SurfaceGrid {
     MeshTriangle triangle;
     PatchId patch;
     RegionId inside = outside_id, across = outside_id;  ///< regions on its two sides
+
+    bool is_sheet() const { return inside == across && inside != outside_id; }
   };
   /// A sample of the input's surface that is reassigned to an added triangle (SurfaceSamples).
   struct ReassignedSample {

@@ -43,16 +43,21 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
     : has_patches_(
           (!given || given->has_patches()) &&
           std::any_of(faces.begin(), faces.end(), [](const InterfaceFace& f) { return f.patch != 0; })),
+      has_sheets_(
+          std::any_of(faces.begin(), faces.end(), [](const InterfaceFace& f) { return f.is_sheet(); })),
       given_patches_(has_patches_ && given),
       given_(given),
       mesh_(&mesh) {
-  if (!given_) {
+  if (!given_ || has_sheets_) {
     PointCopies points(mesh);
     std::vector<ProjectionTree::Item> triangles;
     triangles.reserve(faces.size());
-    for (const InterfaceFace& f : faces)
+    for (const InterfaceFace& f : faces) {
+      // A given surface does not have the sheets.
+      if (given_ && !f.is_sheet()) continue;
       triangles.push_back({{points.number(f.ids[0]), points.number(f.ids[1]), points.number(f.ids[2])},
                            kind_of(f.inside, f.across, f.patch)});
+    }
     surfaces_ = ProjectionTree(std::move(points.points), std::move(triangles));
   }
   // Collect the edges with a number of triangles other than two, or with two of different patches: junction
@@ -60,13 +65,15 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
   struct Edge {
     std::uint64_t key;
     PatchId patch;
+    bool sheet;
   };
   std::vector<Edge> edges(3 * faces.size());
   parallel_for(0, faces.size(), Grains::surface_triangles, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       for (int k = 0; k < 3; ++k) {
         const Index p = faces[i].ids[k], q = faces[i].ids[(k + 1) % 3];
-        edges[3 * i + k] = {std::uint64_t{std::min(p, q)} << 32 | std::max(p, q), faces[i].patch};
+        edges[3 * i + k] = {std::uint64_t{std::min(p, q)} << 32 | std::max(p, q), faces[i].patch,
+                            faces[i].is_sheet()};
       }
   });
   parallel_sort(
@@ -75,11 +82,12 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
   std::vector<ProjectionTree::Item> segments;
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t j = i + 1;
-    while (j < edges.size() && edges[j].key == edges[i].key) ++j;
+    bool sheet = edges[i].sheet;
+    while (j < edges.size() && edges[j].key == edges[i].key) sheet |= edges[j++].sheet;
     const auto p = static_cast<Index>(edges[i].key >> 32), q = static_cast<Index>(edges[i].key);
-    // A given surface with patches provides its own feature edges.
-    if ((j - i != 2 || (!given_patches_ && edges[i].patch != edges[i + 1].patch)) && complete(p) &&
-        complete(q) && !given_has_curve(mesh, p, q)) {
+    // A given surface with patches provides its own feature edges, but not those of sheets.
+    if ((j - i != 2 || ((!given_patches_ || sheet) && edges[i].patch != edges[i + 1].patch)) && complete(p) &&
+        complete(q) && (sheet || !given_has_curve(mesh, p, q))) {
       const Index a = points.number(p), b = points.number(q);
       segments.push_back({{a, b, b}, {}});
     }
@@ -105,7 +113,7 @@ bool SurfaceProjection::given_has_curve(const EditableMesh& mesh, Index p, Index
 
 std::optional<Vec3> SurfaceProjection::onto_surface(const Vec3& p, RegionId first, RegionId second,
                                                     PatchId patch, double max_distance) const {
-  if (!given_) return surfaces_.nearest(p, kind_of(first, second, patch), max_distance);
+  if (!given_ || first == second) return surfaces_.nearest(p, kind_of(first, second, patch), max_distance);
   const auto tag = [&](RegionId r) -> MaterialOrOutside {
     if (r == outside_id) return {};
     return mesh_->tag(r);

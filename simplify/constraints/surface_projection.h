@@ -12,8 +12,8 @@
 namespace tetwright {
 
 /// The surfaces that boundary, interface and junction points are projected onto while shapes are improved:
-/// the interfaces and junction curves of the input mesh, or for interfaces a reference surface given by the
-/// caller. Working coordinates. Queries are safe concurrently.
+/// the interfaces, sheets and junction curves of the input mesh, or for interfaces a reference surface given
+/// by the caller. Working coordinates. Queries are safe concurrently.
 class SurfaceProjection {
  public:
   SurfaceProjection() = default;
@@ -33,6 +33,8 @@ class SurfaceProjection {
   /// Whether some face has a patch other than 0; false if the given surface has no patches. If true, planes
   /// and feature edges are kept exactly.
   bool has_patches() const { return has_patches_; }
+  /// Whether the mesh has sheets, which are kept like patches.
+  bool has_sheets() const { return has_sheets_; }
   /// The nearest or nearly nearest point to p on a patch of the interface between two regions, within
   /// `max_distance`.
   std::optional<Vec3> onto_surface(const Vec3& p, RegionId first, RegionId second, PatchId patch,
@@ -50,7 +52,7 @@ class SurfaceProjection {
                              std::optional<Vec3> (ReferenceSurface::*onto)(const Vec3&, double) const) const;
 
   ProjectionTree surfaces_, curves_, corners_;
-  bool has_patches_ = false;
+  bool has_patches_ = false, has_sheets_ = false;
   bool given_patches_ = false;  ///< `given_` provides feature edges and corners
   const ReferenceSurface* given_ = nullptr;
   const EditableMesh* mesh_ = nullptr;

@@ -99,7 +99,8 @@ InputSurface::InputSurface(const EditableMesh& mesh, const TriangleMesh* given) 
     triangles_ = ProjectionTree(points, items);
     parallel_for(0, faces.size(), Grains::samples, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i)
-        alone[i] = !triangles_.any_within((corner(i, 0) + corner(i, 1) + corner(i, 2)) / 3, reach_);
+        alone[i] = faces[i].is_sheet() ||
+                   !triangles_.any_within((corner(i, 0) + corner(i, 1) + corner(i, 2)) / 3, reach_);
     });
   }
   std::vector<Index> number(mesh.point_slots(), no_index);
@@ -161,7 +162,7 @@ DeviationReport InputSurface::deviation(const EditableMesh& mesh, const Progress
         (scale * scale);
     if (!hidden_.empty() && hidden_[i]) report.hidden_area += size;
     // Without a given surface every item is the mesh's own, and none counts as apart.
-    if (given && !is_given(item)) report.apart_area += size;
+    if (given && !is_given(item) && !kind_of(item).is_sheet()) report.apart_area += size;
   }
   const auto in_input_units = [&](const SurfaceDeviation& d) {
     return SurfaceDeviation{d.lower / scale, d.upper / scale, mesh.space().to_input(d.place), d.rms / scale};
@@ -235,7 +236,7 @@ SurfaceSamples::SurfaceSamples(const EditableMesh& mesh, std::size_t records, co
         const auto accepts = [&](const ProjectionTree::Item& item) {
           const Kind& kind = kinds_[item.kind[0]];
           if (!given) return kind == InputSurface::kind_of(from);
-          return kind.high != outside_id || normal(mesh_faces, item).dot(outwards) > 0;
+          return !kind.is_sheet() && (kind.high != outside_id || normal(mesh_faces, item).dot(outwards) > 0);
         };
         double limit = surface.reach();
         if (last != nobody && accepts(mesh_faces.items()[last]))

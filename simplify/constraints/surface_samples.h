@@ -19,9 +19,9 @@ namespace tetwright {
 /// The surface that a mesh represents, as triangles. Working coordinates.
 class InputSurface {
  public:
-  /// Uses the given surface, and the parts of the mesh's own boundary and interfaces that are far from it
-  /// (caps of holes, layers, the box of a meshed outside). Without a given surface, uses the mesh's whole
-  /// boundary and interfaces.
+  /// Uses the given surface, the sheets of the mesh, and the parts of its own boundary and interfaces that
+  /// are far from the given surface (caps of holes, layers, the box of a meshed outside). Without a given
+  /// surface, uses the mesh's whole boundary and interfaces.
   ///
   /// \param mesh before any operation.
   /// \param given triangles wound outwards, input units; may be null.
@@ -31,6 +31,7 @@ class InputSurface {
   struct Kind {
     RegionId low = outside_id, high = outside_id;
     PatchId patch = 0;
+    bool is_sheet() const { return low == high && low != outside_id; }
     bool operator==(const Kind&) const = default;
   };
   static Kind kind_of(RegionId inside, RegionId across, PatchId patch);
@@ -65,7 +66,8 @@ class InputSurface {
   /// Accuracy of the distances, working coordinates.
   double accuracy() const;
 
-  static constexpr ProjectionTree::Kind given_kind{0, 0, 0};
+  /// No face of a mesh has the outside on both sides, but a sheet has its region on both.
+  static constexpr ProjectionTree::Kind given_kind{outside_id, outside_id, 0};
   ProjectionTree triangles_;
   std::vector<std::uint8_t> hidden_;  ///< by item of triangles_: found by find_hidden()
   double reach_ = 0;

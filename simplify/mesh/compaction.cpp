@@ -11,6 +11,7 @@
 #include "simplify/tuning/tuning.h"
 #include "tetwright/mesh_quality.h"
 #include "tetwright/resources.h"
+#include "tetwright/sheets.h"
 
 namespace tetwright {
 
@@ -168,6 +169,7 @@ TetMesh MeshCompaction::to_mesh() {
     mesh.materials.push_back(mesh_.tags_[mesh_.regions_[i]]);
   }
   const FacePatches patches = this->patches(number);
+  std::vector<InterfaceTriangle> sheets = mesh_.sheets(number);
   mesh.material_names = std::move(mesh_.names_);
   mesh.patch_groups = std::move(mesh_.patch_groups_);
   mesh_.tets_ = {};
@@ -175,7 +177,9 @@ TetMesh MeshCompaction::to_mesh() {
   mesh_.qualities_ = {};
   mesh_.incident_tets_ = {};
   mesh.interfaces = find_interfaces(mesh);
+  put_patches(patches, sheets);
   put_patches(patches, mesh.interfaces);
+  append_sheets(mesh.interfaces, std::move(sheets));
   return mesh;
 }
 

@@ -20,8 +20,10 @@ struct EdgeRing {
   std::vector<Index> points;
   std::vector<Index> tets;
   std::vector<RegionId> regions;  ///< of the tets
-  float worst = 1;                ///< min quality of the tets
-  int interface_triangles = 0;    ///< interface triangles at the edge
+  /// By tet: whether the face (a, b, points[i]) of tets[i] is an interface triangle.
+  std::vector<std::uint8_t> behind_interface;
+  float worst = 1;              ///< min quality of the tets
+  int interface_triangles = 0;  ///< interface triangles at the edge
 
   /// Walks around an edge of a tet.
   ///
@@ -29,7 +31,8 @@ struct EdgeRing {
   /// \return done; too_large if the ring has more than `limit` tets.
   Outcome gather(const EditableMesh& mesh, Index tet, int edge, std::size_t limit = max_tets);
 
-  /// Dimension of the edge: 3 within a material, 2 on an interface, 1 on a junction curve.
+  /// Dimension of the edge: 3 within a material, 2 on an interface, 1 on a junction curve or the border of a
+  /// sheet.
   int dimension() const { return interface_triangles == 0 ? 3 : interface_triangles == 2 ? 2 : 1; }
   /// Rotates a closed ring at an interface so that points[0] is on the first interface triangle.
   void begin_at_interface();

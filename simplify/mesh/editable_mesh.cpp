@@ -130,6 +130,15 @@ std::vector<InterfaceFace> EditableMesh::interface_faces() const {
       });
 }
 
+std::vector<InterfaceTriangle> EditableMesh::sheets(const std::vector<Index>& numbers) const {
+  std::vector<InterfaceTriangle> sheets;
+  for (const InterfaceFace& f : interface_faces())
+    if (f.is_sheet())
+      sheets.push_back(
+          {{numbers[f.ids[0]], numbers[f.ids[1]], numbers[f.ids[2]]}, tags_[f.inside], tags_[f.inside]});
+  return sheets;
+}
+
 double EditableMesh::signed_volume(Index t) const {
   const Tet& p = tets_[t].points;
   return orient3d_value(positions_[p[0]], positions_[p[1]], positions_[p[2]], positions_[p[3]]) / 6;
@@ -181,9 +190,9 @@ bool EditableMesh::links_consistent() const {
       const Index n = r.links[f].tet();
       const TetRecord& o = tets_[n];
       if (o.points[0] == no_index) return false;
-      if (r.links[f].is_interface() != (regions_[n] != regions_[t])) return false;
+      if (regions_[n] != regions_[t] && !r.links[f].is_interface()) return false;
       const int back = face_towards(n, static_cast<Index>(t));
-      if (o.links[back].tet() != t ||
+      if (o.links[back].tet() != t || o.links[back].is_interface() != r.links[f].is_interface() ||
           sorted_face(o.points, back).vertices != sorted_face(r.points, f).vertices)
         return false;
       if (sorted_face(o.points, back).even == sorted_face(r.points, f).even) return false;

@@ -37,7 +37,7 @@ class EditableMesh {
   /// \param name the mesh's name in messages.
   /// \throws InputError if a coordinate is not finite; if a tet repeats a point; if a face has more than two
   ///   tets, or two on one side (neighbours are then undefined); if `interfaces` is neither empty nor what
-  ///   the tets imply.
+  ///   the tets imply, apart from sheets; if a face of a sheet is not between two tets of its material.
   EditableMesh(TetMesh&& mesh, const std::string& name);
 
   /// Returns the mesh without dead tets and unused points, in input units, with its interfaces. Empties this
@@ -185,10 +185,14 @@ class EditableMesh {
   void reserve_twice();
   /// Fraction of dead slots among the slots used so far.
   double dead_share() const;
-  /// The faces between two regions, outside included, each once. Parallel; the order does not depend on the
-  /// number of threads. Patches of interface faces are those of the input, so they are valid only before the
-  /// first operation.
+  /// The faces between two regions, outside included, and those of sheets, each once. Parallel; the order
+  /// does not depend on the number of threads. Patches of interface faces are those of the input, so they are
+  /// valid only before the first operation.
   std::vector<InterfaceFace> interface_faces() const;
+  /// The faces of sheets, without patches.
+  ///
+  /// \param numbers by point: its index in the faces.
+  std::vector<InterfaceTriangle> sheets(const std::vector<Index>& numbers) const;
   /// Sets the patches of interface faces for to_mesh(): SurfaceGrid keeps them during operations.
   void set_interface_patches(FacePatches&& patches) { interface_patches_ = std::move(patches); }
   /// Volume of a live tet, working coordinates cubed.

@@ -49,8 +49,10 @@ void MeshBuilder::build(TetMesh&& input) {
   mesh_.touched_.assign(mesh_.positions_.size(), 0);
   link_faces();
   mesh_.set_incident_tets();
+  take_sheets(interfaces);
   take_patches(interfaces);
   split_stars();
+  freeze_sheet_corners();
 }
 
 void MeshBuilder::take_points(std::vector<Vec3>&& points) {
@@ -121,6 +123,80 @@ void MeshBuilder::link_faces() {
                          place(mesh_.space_.to_input(mesh_.positions_[s[0]])) +
                          " has more than two tets, or two on one side; `tetwright check` lists all of them");
   }
+}
+
+void MeshBuilder::take_sheets(const std::vector<InterfaceTriangle>& interfaces) {
+  std::map<Triangle, const InterfaceTriangle*> sheets;
+  const auto refuse = [&](std::size_t count, const char* what, const Triangle& ids) {
+    const std::vector<Vec3>& at = mesh_.positions_;
+    throw InputError(name_, 0,
+                     std::to_string(count) + what +
+                         place(mesh_.space_.to_input((at[ids[0]] + at[ids[1]] + at[ids[2]]) / 3)) +
+                         "; `tetwright check` lists all of them");
+  };
+  for (const InterfaceTriangle& t : interfaces)
+    if (t.is_sheet() && !sheets.emplace(face_key(t.ids), &t).second)
+      refuse(1, " face of its sheets is listed twice, at ", t.ids);
+  if (sheets.empty()) return;
+  std::vector<std::uint8_t> on_sheet(mesh_.positions_.size(), 0);
+  for (const auto& [key, triangle] : sheets)
+    for (const Index p : key) on_sheet[p] = 1;
+  for (Index t = 0; t < mesh_.tets_.size(); ++t)
+    for (int f = 0; f < 4; ++f) {
+      TetRecord& tet = mesh_.tets_[t];
+      const FaceLink link = tet.links[f];
+      if (link.is_outside() || link.is_interface() || link.tet() < t) continue;
+      const Triangle key = sorted_face(tet.points, f).vertices;
+      if (!on_sheet[key[0]] || !on_sheet[key[1]] || !on_sheet[key[2]]) continue;
+      const auto found = sheets.find(key);
+      if (found == sheets.end() || found->second->material != mesh_.tags_[mesh_.regions_[t]]) continue;
+      // Compare vertices: two tets may share more than one face.
+      TetRecord& other = mesh_.tets_[link.tet()];
+      for (int back = 0; back < 4; ++back)
+        if (sorted_face(other.points, back).vertices == key) other.links[back] = FaceLink::to(t, true);
+      tet.links[f] = FaceLink::to(link.tet(), true);
+      sheets.erase(found);
+    }
+  if (!sheets.empty())
+    refuse(sheets.size(), " faces of its sheets do not lie between two tets of their material, the first at ",
+           sheets.begin()->first);
+}
+
+void MeshBuilder::freeze_sheet_corners() {
+  const std::vector<Index> corners = sheet_corners();
+  if (corners.empty()) return;
+  mesh_.frozen_.resize(mesh_.positions_.size(), 0);
+  for (const Index p : corners) mesh_.frozen_[p] |= EditableMesh::alone;
+}
+
+std::vector<Index> MeshBuilder::sheet_corners() const {
+  const std::vector<InterfaceFace> faces = mesh_.interface_faces();
+  if (std::none_of(faces.begin(), faces.end(), [](const InterfaceFace& f) { return f.is_sheet(); }))
+    return {};
+  struct Uses {
+    std::size_t count = 0;
+    bool sheet = false;
+  };
+  std::map<std::array<Index, 2>, Uses> edges;
+  for (const InterfaceFace& f : faces)
+    for (std::size_t k = 0; k < 3; ++k) {
+      Uses& uses = edges[ascending_edge(f.ids[k], f.ids[(k + 1) % 3])];
+      ++uses.count;
+      uses.sheet |= f.is_sheet();
+    }
+  std::map<Index, std::vector<Index>> neighbours;  // along curves of sheets
+  for (const auto& [ends, uses] : edges)
+    if (uses.sheet && uses.count != 2)
+      for (std::size_t k = 0; k < 2; ++k) neighbours[ends[k]].push_back(ends[1 - k]);
+  std::vector<Index> corners;
+  for (const auto& [p, others] : neighbours) {
+    if (others.size() != 2) continue;
+    const Vec3& at = mesh_.positions_[p];
+    const Vec3 u = (at - mesh_.positions_[others[0]]).normalized(),
+               v = (mesh_.positions_[others[1]] - at).normalized();
+    if (u.dot(v) < SimplifyTuning::Features::sheet_corner_cosine) corners.push_back(p);
+  }
+  return corners;
 }
 
 void MeshBuilder::take_patches(const std::vector<InterfaceTriangle>& interfaces) {

@@ -21,6 +21,12 @@ class MeshBuilder {
   void take_points(std::vector<Vec3>&& points);
   void take_tets(const TetMesh& input);
   void link_faces();
+  /// Marks the links across faces of the input's sheets.
+  void take_sheets(const std::vector<InterfaceTriangle>& interfaces);
+  /// Freezes the corners of sheets: the borders of sheets and the curves in which they meet other sheets or
+  /// interfaces are kept, and so must be the points at which these curves turn.
+  void freeze_sheet_corners();
+  std::vector<Index> sheet_corners() const;
   /// Sets the faces' patches from the input's interfaces.
   void take_patches(const std::vector<InterfaceTriangle>& interfaces);
   /// Splits points whose star consists of parts not joined by faces, and freezes them with all their tets.

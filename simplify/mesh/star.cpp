@@ -67,6 +67,7 @@ Outcome Star::gather(const EditableMesh& mesh, Index centre_point) {
         if (!across.is_interface() || other < tet)
           continue;  // an interface between two materials is visited from both sides
         interface_triangles.push_back({a, b, region, mesh.region(other), 0});
+        sheets |= interface_triangles.back().is_sheet();
       }
       ++interface_count[a];
       ++interface_count[b];
@@ -91,6 +92,7 @@ void Star::begin(Index centre_point, const Vec3& position) {
   worst = 1;
   frozen = false;
   creases = false;
+  sheets = false;
 }
 
 void Star::find_creases() {
@@ -130,6 +132,7 @@ void Star::add_interface_triangle(Index first, Index second, RegionId inside, Re
   const auto a = static_cast<std::uint16_t>(point_numbers_.find(first)),
              b = static_cast<std::uint16_t>(point_numbers_.find(second));
   interface_triangles.push_back({a, b, inside, across, patch});
+  sheets |= interface_triangles.back().is_sheet();
   ++interface_count[a];
   ++interface_count[b];
 }
@@ -193,6 +196,7 @@ void Star::compute_gradients() {
   for (const InterfaceTriangle& s : interface_triangles)
     areas_.push_back((positions[s.first] - centre_position).cross(positions[s.second] - centre_position) *
                      (1.0 / 6));
+  if (sheets) sheet_normal_ = oriented_area();
   for (std::size_t k = 0; k < tets.size(); ++k) {
     const StarTet& t = tets[k];
     const Vec3 change = normals[k] * (-1.0 / 6);  // the volume is linear in c
@@ -206,16 +210,45 @@ void Star::compute_gradients() {
   }
 }
 
+Vec3 Star::oriented_area() {
+  Vec3 sum = areas_.front();
+  sides_.assign(interface_triangles.size(), 0);  // 0: not reached
+  sides_.front() = 1;
+  for (bool reached = true; reached;) {
+    reached = false;
+    for (std::size_t i = 0; i < interface_triangles.size(); ++i)
+      for (std::size_t j = 0; j < interface_triangles.size() && sides_[i] == 0; ++j) {
+        const InterfaceTriangle &s = interface_triangles[i], &t = interface_triangles[j];
+        if (sides_[j] == 0 ||
+            !(s.first == t.first || s.first == t.second || s.second == t.first || s.second == t.second))
+          continue;
+        // Equally oriented triangles traverse their common edge in opposite directions.
+        sides_[i] = s.first == t.first || s.second == t.second ? -sides_[j] : sides_[j];
+        sum += sides_[i] * areas_[i];
+        reached = true;
+      }
+  }
+  return sum;
+}
+
 const std::vector<VolumeChange>& Star::volume_changes(const Vec3& step) {
   changes_.clear();
   for (const VolumeGradient& g : gradients) changes_.push_back({g.region, g.change.dot(step)});
   return changes_;
 }
 
+double Star::swept_by_sheets(const Vec3& step) const {
+  double swept = 0;
+  for (std::size_t k = 0; k < interface_triangles.size(); ++k)
+    if (interface_triangles[k].is_sheet()) swept += std::fabs(areas_[k].dot(step));
+  return swept;
+}
+
 double Star::surface_error(const Vec3& step, double gamma, bool losses_cancel) {
   if (losses_cancel) {
     double sum = 0;
     for (const VolumeGradient& g : gradients) sum += portable_cbrt(std::fabs(g.change.dot(step)));
+    if (sheets) sum += portable_cbrt(swept_by_sheets(step));
     return gamma * sum;
   }
   // Moving the centre makes each interface triangle sweep a tet of volume |area vector . step| / 3.

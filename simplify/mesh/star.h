@@ -29,11 +29,13 @@ struct Star {
     /// Whether the link triangle has `point`, a local number.
     bool links(std::size_t point) const { return link[0] == point || link[1] == point || link[2] == point; }
   };
-  /// An interface triangle (centre, first, second): a face between different regions, outside included.
+  /// An interface triangle (centre, first, second): a face between different regions, outside included, or of
+  /// a sheet.
   struct InterfaceTriangle {
     std::uint16_t first, second;  ///< local numbers
     RegionId inside, across;
     PatchId patch;
+    bool is_sheet() const { return inside == across; }
     /// Whether this triangle and another one at a common edge belong to the same smooth surface.
     bool continues(const InterfaceTriangle& other) const {
       return patch == other.patch && ((inside == other.inside && across == other.across) ||
@@ -51,6 +53,7 @@ struct Star {
   float worst = 1;       ///< min quality of the tets
   bool frozen = false;   ///< the centre must stay (EditableMesh::frozen)
   bool creases = false;  ///< two interface triangles meet at an edge and do not continue each other
+  bool sheets = false;   ///< an interface triangle belongs to a sheet
 
   /// Copies the closed star of `centre`. Interface faces get patch 0; a caller that knows their patches must
   /// set them and call find_creases().
@@ -71,7 +74,7 @@ struct Star {
   void find_creases();
 
   /// Dimension of the edge from the centre to a link point: 3 within a material, 2 on an interface, 1 on a
-  /// junction curve or between two patches.
+  /// junction curve, between two patches or on the border of a sheet.
   int edge_dimension(std::size_t link_point) const {
     const unsigned n = interface_count[link_point];
     return n == 0 ? 3 : n == 2 && !(creases && crease_[link_point]) ? 2 : 1;
@@ -93,6 +96,10 @@ struct Star {
   };
   std::vector<VolumeGradient> gradients;
   void compute_gradients();
+  /// A normal of the surface at a centre of dimension 2, of any length: the gradient of the first region's
+  /// volume, or the area vector of the sheet's triangles, since a sheet changes no volume.
+  /// \pre compute_gradients() has been called.
+  const Vec3& surface_normal() const { return sheets ? sheet_normal_ : gradients.front().change; }
   /// Change of each region's volume if the centre moves by `step` or is collapsed along it.
   /// \pre compute_gradients() has been called.
   const std::vector<VolumeChange>& volume_changes(const Vec3& step);
@@ -100,14 +107,23 @@ struct Star {
   /// over the materials of the cube root of the volume change.
   ///
   /// \param losses_cancel uses the net change, as in the paper. Otherwise the absolute gains and losses of
-  ///   the interface triangles add up, so that cutting off a saddle or an edge has a cost.
+  ///   the interface triangles add up, so that cutting off a saddle or an edge has a cost. The volumes that
+  ///   sheets sweep always add up.
   double surface_error(const Vec3& step, double gamma, bool losses_cancel);
 
  private:
+  /// Sum of the areas of the interface triangles, oriented consistently: the triangles of a sheet have no
+  /// side.
+  Vec3 oriented_area();
+  /// Volume that the triangles of sheets sweep if the centre moves by `step`.
+  double swept_by_sheets(const Vec3& step) const;
+
   LocalNumbers point_numbers_, tet_numbers_;
   std::vector<std::uint8_t> crease_;           // by link point, where there are creases
   mutable std::vector<std::uint8_t> visited_;  // scratch of dimension()
+  std::vector<int> sides_;                     // scratch of oriented_area()
   std::vector<Vec3> areas_;                    // a third of each interface triangle's area vector
+  Vec3 sheet_normal_ = Vec3::Zero();           // oriented_area(), if there are sheets
   std::vector<VolumeChange> changes_;
   std::vector<double> swept_;  // scratch of surface_error()
 };

@@ -16,8 +16,8 @@ inline constexpr RegionId outside_id = 0xffffffffu;
 /// same two regions that differ in their patch meet in a junction curve: a feature edge, or crease.
 using PatchId = std::uint16_t;
 
-/// A tet's entry for one of its faces: the tet across it and whether its region differs, or outside and the
-/// patch of the boundary face. 4 bytes.
+/// A tet's entry for one of its faces: the tet across it and whether the face is kept as an interface, or
+/// outside and the patch of the boundary face. 4 bytes.
 class FaceLink {
  public:
   constexpr FaceLink() = default;
@@ -26,7 +26,8 @@ class FaceLink {
   static constexpr FaceLink outside(PatchId patch) { return FaceLink(~std::uint32_t{patch}); }
 
   constexpr bool is_outside() const { return word_ >= first_outside; }
-  /// Whether the regions on both sides differ; outside counts as a region.
+  /// Whether the regions on both sides differ (outside counts as a region) or the face belongs to a sheet,
+  /// an interface with the same region on both sides.
   constexpr bool is_interface() const { return (word_ & flag) != 0; }
   /// The tet across the face; no_index: outside.
   constexpr Index tet() const { return is_outside() ? no_index : word_ & ~flag; }
@@ -67,11 +68,13 @@ inline constexpr Index unnumbered_point = no_index - 1;
 
 inline constexpr Tet dead_tet{no_index, no_index, no_index, no_index};
 
-/// A face between two regions, one of which may be outside.
+/// A face between two regions, one of which may be outside, or a face of a sheet.
 struct InterfaceFace {
   Triangle ids;  ///< the normal points out of `inside`
   RegionId inside, across;
   PatchId patch;
+
+  bool is_sheet() const { return inside == across; }
 };
 
 }  // namespace tetwright

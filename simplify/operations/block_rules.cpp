@@ -28,7 +28,7 @@ double crease_distance(const SurfaceProjection& projection, const Vec3& p, const
 void BlockRules::project_onto(const SurfaceProjection& surfaces, double diagonal) {
   surface.projection = &surfaces;
   surface.max_feature_distance.reset();
-  if (!surfaces.has_patches()) return;
+  if (!surfaces.has_patches() && !surfaces.has_sheets()) return;
   const double distance = Features::max_segment_share * diagonal;
   surface.max_feature_distance = std::min(distance, deviation.tolerance.value_or(distance));
 }

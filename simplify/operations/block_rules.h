@@ -77,7 +77,7 @@ struct SurfaceBounds {
   /// of average length. Unlike E, it does not accumulate over several operations.
   std::optional<double> max_distance;
   /// Max distance of a feature segment from the input's feature edges; a segment may keep the distance of
-  /// those it replaces. std::nullopt: the mesh has no patches.
+  /// those it replaces. std::nullopt: the mesh has neither patches nor sheets.
   std::optional<double> max_feature_distance;
   /// Lets points of interfaces, junction curves and corners leave them by up to max_distance, or by their
   /// current distance if that is larger, if that improves the shapes (needs `projection`). Points where
@@ -126,7 +126,15 @@ struct BlockRules {
 
   /// Whether the mesh has patches. If so, points move on their patch and along the feature edges between
   /// patches, and never leave a flat patch.
-  bool has_patches() const { return surface.max_feature_distance.has_value(); }
+  bool has_patches() const { return surface.projection && surface.projection->has_patches(); }
+  /// Whether these rules hold for the star's centre: the mesh has patches, or the centre lies on a sheet.
+  bool keeps_patches(const Star& star) const {
+    return has_patches() || (star.sheets && surface.max_feature_distance);
+  }
+  /// Whether the star's centre may lie on a feature edge: where patches meet, or on a curve of a sheet.
+  bool keeps_curves(const Star& star) const {
+    return surface.max_feature_distance && (star.creases || star.sheets);
+  }
   /// Ratio of the target edge length at a point to the average one of the simplified mesh; 1 without a target
   /// length.
   double scale_at(const Vec3& place) const {
@@ -146,7 +154,7 @@ bool near_reference(const BlockRules& rules, const SurfaceGrid::Added& t, Region
 /// Whether the feature segments that end at the star's centre may be replaced by a segment from link point
 /// `first` to `to` and, if `second` is given, by another one from `to` to that link point. Link points are
 /// local numbers.
-/// \pre rules.has_patches().
+/// \pre rules.keeps_curves(star).
 bool near_crease(const BlockRules& rules, const Star& star, std::size_t first, const Vec3& to,
                  std::optional<std::size_t> second = {});
 

@@ -52,7 +52,7 @@ bool surface_edit(Workspace& ws, const BlockRules& rules, std::size_t b) {
   const Star& star = ws.star;
   SurfaceGrid::Edit& edit = ws.proposal.edit;
   edit.clear();
-  if (rules.has_patches() && star.creases && star.edge_dimension(b) == 1)
+  if (rules.keeps_curves(star) && star.edge_dimension(b) == 1)
     for (std::size_t p = 0; p < star.points.size(); ++p)
       if (p != b && star.edge_dimension(p) == 1 && !near_crease(rules, star, p, star.positions[b]))
         return false;
@@ -73,10 +73,16 @@ bool surface_edit(Workspace& ws, const BlockRules& rules, std::size_t b) {
 void close_gap(const EditableMesh& mesh, Proposal& proposal, Index tet) {
   const int slot_a = mesh.slot_of(tet, proposal.centre), slot_b = mesh.slot_of(tet, proposal.target);
   const FaceLink across_a = mesh.link(tet, slot_a), across_b = mesh.link(tet, slot_b);
+  /// Whether the face into which the tet's two faces merge is one of a sheet: one of them is, since the link
+  /// condition refuses to merge two.
+  const auto is_sheet = [&](Index side) {
+    return mesh.region(side) == mesh.region(tet) && (across_a.is_interface() || across_b.is_interface());
+  };
   /// The link from the neighbour on one side to the other one.
   const auto joined = [&](Index side, FaceLink other) {
-    return other.is_outside() ? other
-                              : FaceLink::to(other.tet(), mesh.region(side) != mesh.region(other.tet()));
+    return other.is_outside()
+               ? other
+               : FaceLink::to(other.tet(), mesh.region(side) != mesh.region(other.tet()) || is_sheet(side));
   };
   for (const auto& [side, other] : {std::array{across_a, across_b}, std::array{across_b, across_a}})
     if (!side.is_outside())

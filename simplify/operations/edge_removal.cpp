@@ -73,7 +73,7 @@ class EdgeRemoval {
   }
 
  private:
-  /// Chains of points around the edge, one for each region.
+  /// Chains of points around the edge, one for each side of the interface.
   void make_chains() {
     EdgeRing& ring = ws_.ring;
     std::array<std::vector<Index>, 2>& chains = ws_.chains;
@@ -89,7 +89,9 @@ class EdgeRemoval {
     regions_ = {ring.regions.front(), ring.regions.back()};
     const std::size_t n = ring.tets.size();
     std::size_t k = 0;
-    for (; k < n && ring.regions[k] == regions_[0]; ++k) chains[0].push_back(ring.points[k]);
+    do {
+      chains[0].push_back(ring.points[k++]);
+    } while (!ring.behind_interface[k]);
     chains[0].push_back(ring.points[k]);
     for (; k < n; ++k) chains[1].push_back(ring.points[k]);
     chains[1].push_back(ring.points[0]);
@@ -173,6 +175,7 @@ class EdgeRemoval {
   std::array<VolumeChange, 2> volume_changes() const {
     const EdgeRing& ring = ws_.ring;
     const EditableMesh& mesh = ws_.mesh;
+    if (ring.closed && regions_[0] == regions_[1]) return {{{regions_[0], 0}, {outside_id, 0}}};  // a sheet
     double gained = 0;
     for (const NewTet& t : ws_.proposal.added)
       if (t.region == regions_[0])

@@ -29,11 +29,14 @@ class FaceTree {
     const NewTet plain{{a_, b_, x, y}, region_, quality_of(mesh_, rules_, {a_, b_, x, y})};
     if (faces_ >= max_faces_) return keep(plain);
     // The tets beyond the edge on both sides, and their common point.
-    const Index next_a = across(tet_a, x, y, a_), next_b = across(tet_b, x, y, b_);
-    if (next_a == no_index || next_b == no_index || next_a == next_b) return keep(plain);
-    if (mesh_.region(next_a) != region_ || mesh_.region(next_b) != region_) return keep(plain);
+    const FaceLink link_a = across(tet_a, x, y, a_), link_b = across(tet_b, x, y, b_);
+    if (link_a.is_interface() || link_b.is_interface()) return keep(plain);
+    const Index next_a = link_a.tet(), next_b = link_b.tet();
+    if (next_a == next_b) return keep(plain);
     const Index w = fourth(mesh_.points(next_a), a_, x, y);
     if (w == no_index || w != fourth(mesh_.points(next_b), b_, x, y)) return keep(plain);
+    // The face between them would vanish.
+    if (across(next_a, x, y, w).is_interface()) return keep(plain);
     // A tet already removed ends the recursion.
     if (std::find(removed.begin(), removed.end(), next_a) != removed.end()) return keep(plain);
     const std::size_t added_before = added.size(), removed_before = removed.size(), faces_before = faces_;
@@ -57,12 +60,12 @@ class FaceTree {
     added.push_back(t);
     return t.quality;
   }
-  /// Neighbour of t across its face (x, y, apex).
-  Index across(Index t, Index x, Index y, Index apex) const {
+  /// Link of t across its face (x, y, apex).
+  FaceLink across(Index t, Index x, Index y, Index apex) const {
     const Tet& p = mesh_.points(t);
     for (int k = 0; k < 4; ++k)
-      if (p[k] != x && p[k] != y && p[k] != apex) return mesh_.neighbour(t, k);
-    return no_index;
+      if (p[k] != x && p[k] != y && p[k] != apex) return mesh_.link(t, k);
+    return {};
   }
   static Index fourth(const Tet& t, Index p, Index q, Index r) {
     for (Index i : t)

@@ -53,7 +53,7 @@ Outcome fit_to_samples(Workspace& ws, const BlockRules& rules, float floor, Samp
   const SurfaceSamples* samples = ws.grid.samples();
   if (!samples || star.frozen || star.dimension() != 2) return Outcome::no_candidate;
   star.compute_gradients();
-  if (rules.has_patches() && is_flat(star)) return Outcome::no_candidate;
+  if (rules.keeps_patches(star) && is_flat(star)) return Outcome::no_candidate;
   SurfaceGrid::Edit& edit = ws.proposal.edit;
   edit.clear();
   const Vec3& c = star.centre_position;

@@ -230,9 +230,8 @@ Outcome try_edge(Workspace& ws, const BlockRules& rules, Index tet, int edge, In
                        end_patch(ring.tets.back(), ring.points[ring.points.size() - 2]));
   }
   for (std::size_t i = ring.closed ? 0 : 1; i < n; ++i) {
-    const RegionId before = ring.regions[(i + n - 1) % n];
-    if (before != ring.regions[i])
-      interface_triangle(ring.points[i], ring.regions[i], before,
+    if (ring.behind_interface[i])
+      interface_triangle(ring.points[i], ring.regions[i], ring.regions[(i + n - 1) % n],
                          ws.grid.patch(mesh, {ring.a, ring.b, ring.points[i]}));
   }
   return frozen ? Outcome::material_rule : propose(ws, rules, place);

@@ -32,7 +32,7 @@ bool surface_edit(Workspace& ws, const BlockRules& rules, const Vec3& to) {
 
 /// Whether a point where patches meet stays near its feature edge at `to`.
 bool stays_near_crease(const Star& star, const BlockRules& rules, const Vec3& to) {
-  if (!rules.has_patches() || !star.creases) return true;
+  if (!rules.keeps_curves(star)) return true;
   std::optional<std::size_t> first;
   for (std::size_t p = 0; p < star.points.size(); ++p) {
     if (star.edge_dimension(p) != 1) continue;
@@ -52,7 +52,7 @@ double shortest_edge(const Star& star) {
 }
 
 bool is_flat(const Star& star) {
-  const Vec3 normal = star.gradients.front().change.normalized();
+  const Vec3 normal = star.surface_normal().normalized();
   return std::all_of(star.interface_triangles.begin(), star.interface_triangles.end(),
                      [&](const Star::InterfaceTriangle& s) {
                        const auto off = [&](std::size_t p) {

@@ -43,21 +43,35 @@ void write_tets(EditableMesh& mesh, const Proposal& p, CommitWorkspace& ws) {
     mesh.set_quality(slot, n.quality);
     for (int f = 0; f < 4; ++f)
       ws.sides.push_back(
-          {sorted_face(points, f).vertices, slot, static_cast<std::uint8_t>(f), n.region, 0, false});
+          {sorted_face(points, f).vertices, slot, static_cast<std::uint8_t>(f), n.region, 0, false, false});
   }
   for (std::size_t i = p.added.size(); i < p.removed.size(); ++i) mesh.set_points(p.removed[i], dead_tet);
 }
 
-/// Patch of a new boundary face.
-PatchId patch_of_added(const Proposal& p, const Triangle& key) {
+/// The added interface triangle with these points; null: there is none.
+const SurfaceGrid::Added* find_added(const Proposal& p, const Triangle& key) {
   for (const SurfaceGrid::Added& a : p.edit.added) {
     Triangle ids = a.triangle.ids;
     std::replace(ids.begin(), ids.end(), unnumbered_point, p.new_point_id);
     std::sort(ids.begin(), ids.end());
-    if (ids == key) return a.patch;
+    if (ids == key) return &a;
   }
-  TETWRIGHT_CHECK(false);  // a hole would open
-  return 0;
+  return nullptr;
+}
+
+/// Patch of a new boundary face.
+PatchId patch_of_added(const Proposal& p, const Triangle& key) {
+  const SurfaceGrid::Added* added = find_added(p, key);
+  TETWRIGHT_CHECK(added != nullptr);  // else a hole would open
+  return added->patch;
+}
+
+/// Whether a face between two tets of the cavity is an interface after the proposal.
+bool is_interface_within(const Proposal& p, const CommitWorkspace::Side& x, const CommitWorkspace::Side& y,
+                         bool adds_sheet) {
+  if (x.region != y.region) return true;
+  if (y.outer) return y.interface;
+  return adds_sheet && find_added(p, x.key) != nullptr;
 }
 
 void link_sides(EditableMesh& mesh, const Proposal& p, CommitWorkspace& ws) {
@@ -66,12 +80,14 @@ void link_sides(EditableMesh& mesh, const Proposal& p, CommitWorkspace& ws) {
   std::sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
     return x.key != y.key ? x.key < y.key : x.outer != y.outer ? y.outer : x.tet < y.tet;
   });
+  const bool adds_sheet = std::any_of(p.edit.added.begin(), p.edit.added.end(),
+                                      [](const SurfaceGrid::Added& a) { return a.is_sheet(); });
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const Side& x = sides[i];
     if (i + 1 < sides.size() && x.key == sides[i + 1].key) {
       const Side& y = sides[++i];
-      const bool interface = x.region != y.region;
       if (y.tet != no_index) {
+        const bool interface = is_interface_within(p, x, y, adds_sheet);
         mesh.set_link(x.tet, x.face, FaceLink::to(y.tet, interface));
         mesh.set_link(y.tet, y.face, FaceLink::to(x.tet, interface));
       } else {
@@ -91,7 +107,7 @@ void commit_replace(EditableMesh& mesh, const Proposal& p, CommitWorkspace& ws) 
   if (p.has_new_point) mesh.set_position(p.new_point_id, p.position);
   write_tets(mesh, p, ws);
   for (const Proposal::HullFace& f : p.hull)
-    ws.sides.push_back({f.key, f.tet, f.face, f.region, f.patch, true});
+    ws.sides.push_back({f.key, f.tet, f.face, f.region, f.patch, true, f.interface});
   link_sides(mesh, p, ws);
   const auto first_with = [&](Index point) {
     for (std::size_t i = 0; i < p.added.size(); ++i)
@@ -150,7 +166,7 @@ void Proposal::claim_cavity(const EditableMesh& mesh) {
       if (!link.is_outside() && is_removed(link.tet())) continue;
       const Triangle key = sorted_face(points, f).vertices;
       if (link.is_outside()) {
-        hull.push_back({key, no_index, 0, outside_id, link.patch()});
+        hull.push_back({key, no_index, 0, outside_id, link.patch(), true});
         continue;
       }
       const Index across = link.tet();
@@ -160,7 +176,8 @@ void Proposal::claim_cavity(const EditableMesh& mesh) {
              (mesh.neighbour(across, back) != t || sorted_face(mesh.points(across), back).vertices != key))
         ++back;
       TETWRIGHT_CHECK(back < 4);  // links are mutual
-      hull.push_back({key, across, static_cast<std::uint8_t>(back), mesh.region(across), 0});
+      hull.push_back(
+          {key, across, static_cast<std::uint8_t>(back), mesh.region(across), 0, link.is_interface()});
     }
   }
   read_set_size = write_set.size();

@@ -74,6 +74,7 @@ struct Proposal {
     std::uint8_t face;  ///< of that tet
     RegionId region;    ///< of that tet
     PatchId patch;      ///< of a boundary face
+    bool interface;
   };
   std::vector<HullFace> hull;
   std::vector<Index> orphans;  ///< replace: points whose incident tet is removed
@@ -115,7 +116,8 @@ struct CommitWorkspace {
     std::uint8_t face;
     RegionId region;
     PatchId patch;
-    bool outer;  ///< a face of the hull, else of a new tet
+    bool outer;      ///< a face of the hull, else of a new tet
+    bool interface;  ///< of a face of the hull
   };
   std::vector<Side> sides;
   std::vector<Index> slots;

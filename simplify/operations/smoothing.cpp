@@ -37,7 +37,7 @@ Vec3 centroid(const Star& star, int dimension) {
 Vec3 keep_volumes(const Star& star, Vec3 step) {
   // The gradients are opposite at an interface between two materials, and the boundary has only one, so use
   // the first. Along a junction curve they differ: leave the step unchanged and rely on the error bound.
-  const Vec3& g = star.gradients.front().change;
+  const Vec3& g = star.surface_normal();
   const double g2 = g.squaredNorm();
   if (g2 > 0) step -= g * (g.dot(step) / g2);
   return step;
@@ -51,7 +51,7 @@ std::array<Vec3, 3> free_directions(const Star& star, int dimension, bool leave_
   }
   if (dimension == 2) {
     count = 2;
-    const Vec3 normal = star.gradients.front().change.normalized();
+    const Vec3 normal = star.surface_normal().normalized();
     int axis;
     normal.cwiseAbs().minCoeff(&axis);
     const Vec3 u = normal.cross(Vec3::Unit(axis)).normalized();
@@ -89,11 +89,11 @@ void sort_by_quality(Star& star) {
   });
 }
 
-/// Whether the centre may leave its surface or curve slightly. Points where patches meet and points of flat
-/// patches may not.
+/// Whether the centre may leave its surface or curve slightly. Points where patches meet, of flat patches and
+/// of sheets may not.
 /// \pre Gradients are computed.
 bool may_leave(const Star& star, const BlockRules& rules) {
-  return rules.surface.leave_surface && rules.surface.projection && !star.creases &&
+  return rules.surface.leave_surface && rules.surface.projection && !star.creases && !star.sheets &&
          !(rules.has_patches() && !star.interface_triangles.empty() && is_flat(star));
 }
 
@@ -148,10 +148,10 @@ class PlacementSearch {
     // reach it stays in its plane.
     if (rules_.surface.projection && dimension_ == 2 && !leave_surface_)
       if (const auto on = nearest(star_.centre_position, reach_)) {
-        const Vec3 normal = star_.gradients.front().change.normalized();
+        const Vec3 normal = star_.surface_normal().normalized();
         offset_ = normal * normal.dot(star_.centre_position - *on);
         // Drop rounding errors, which would accumulate.
-        if (rules_.has_patches() && offset_.norm() <= tolerance::flat_patch) offset_.setZero();
+        if (rules_.keeps_patches(star_) && offset_.norm() <= tolerance::flat_patch) offset_.setZero();
       }
     max_distance_ = rules_.surface.max_distance.value_or(0);
     // A point of dimension 0 at which no curve ends or branches (two interfaces that touch) has no corner to
@@ -311,7 +311,7 @@ Outcome smooth(Workspace& ws, const BlockRules& rules) {
   float worst;
   for (int i = 0; i < Smoothing::steps; ++i, step *= 0.5) {
     Vec3 to = star.centre_position + step;
-    if (rules.has_patches() && dimension < 3) {
+    if (rules.keeps_patches(star) && dimension < 3) {
       const Star::InterfaceTriangle& s = star.interface_triangles.front();
       const double reach = Smoothing::projection_reach * shortest_edge(star);
       const auto on = dimension == 2

@@ -25,9 +25,10 @@ Engine::Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, P
   rules.objective.quality = TetQuality::for_target(mesh_.total_volume(), options.target_tets, options.beta);
   rules.objective.shape = options.objective;
   rules.error.gamma = options.gamma;
-  // Patches must be preserved from the first collapse on. Without patches, only improvement needs the
+  // Patches and sheets must be preserved from the first collapse on. Without them, only improvement needs the
   // projection.
-  if (projection_.has_patches()) rules.project_onto(projection_, mesh_.diagonal());
+  if (projection_.has_patches() || projection_.has_sheets())
+    rules.project_onto(projection_, mesh_.diagonal());
 }
 
 TetMesh Engine::take() && {

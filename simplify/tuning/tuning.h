@@ -112,6 +112,9 @@ struct SimplifyTuning {
     /// Sweeps of fit_to_crease() before the final improvement. Once a point has reached its feature edge, its
     /// neighbours may have more room.
     static constexpr int closing_sweeps = 3;
+    /// Cosine of the turn, 45 degrees, above which a point of a sheet's border or of a curve in which sheets
+    /// meet is a corner: the turn that makes corners of creases (SurfaceCreases).
+    static constexpr double sheet_corner_cosine = 0.70710678118654752;
   };
 
   /// Edge and face removals beyond the basic flips of the paper, section 4.

@@ -57,6 +57,13 @@ def _():
 
 @case("cubes_sharing_edge", turned=True)
 def _():
+    low, high = np.array((1, 0.6, 0.31)), np.array((1.4, 1, 0.71))  # the sides y = 1 are flush
+    partition = carved([sh.box((0, 0, 0), (1, 1, 1)), sh.box(low, high)])
+    return of_partition(partition, [Input("large", cube(3)), Input("small", sh.gridded_box(low, high, 4)[:2])])
+
+
+@case("cubes_touching_at_edge", turned=True)
+def _():
     first, second = sh.box((0, 0, 0), (1, 1, 1)), sh.box((1, 1, 0), (2, 2, 1))
     bodies = {1: sh.outline(first), 2: sh.outline(second)}
     # A valid mesh has no edge with four boundary triangles, so without an interface the cubes are apart.

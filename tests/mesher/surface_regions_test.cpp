@@ -295,6 +295,51 @@ TEST(SurfaceRegions, ContactOfTurnedBodiesIsOnePiece) {
   EXPECT_NEAR(volume, 2, 1e-9);
 }
 
+TEST(SurfaceRegions, OverlapsBelongToTheBodyThatTheRuleNames) {
+  TriangleMesh second = unit_cube();
+  for (Vec3& p : second.points) p += Vec3(0.5, 0.25, 0.25);
+  const double both = 0.5 * 0.75 * 0.75;
+  struct Expected {
+    OverlapRule rule;
+    std::string owner;
+    std::map<std::string, double> volumes;
+  };
+  for (const Expected& e :
+       {Expected{OverlapRule::later, "b", {{"a", 1 - both}, {"b", 1}}},
+        Expected{OverlapRule::first, "a", {{"a", 1}, {"b", 1 - both}}},
+        Expected{OverlapRule::material, "a+b", {{"a", 1 - both}, {"b", 1 - both}, {"a+b", both}}}}) {
+    ContactOptions contact;
+    contact.overlap = e.rule;
+    const MesherInput input = make_mesher_input({{"a", 1, unit_cube(), "a"}, {"b", 2, second, "b"}}, {},
+                                                NestedRule::automatic, contact);
+    ASSERT_EQ(input.overlaps.size(), 1U);
+    EXPECT_EQ(input.overlaps[0].owner, e.owner);
+    const TetMesh mesh = mesh_surfaces(input, {.resolution = 12}, nullptr).mesh;
+    std::map<std::string, double> volumes;
+    for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+      const auto& [p, q, r, s] = mesh.tets[t];
+      const Vec3& o = mesh.points[p];
+      volumes[mesh.material_names.at(mesh.materials[t])] +=
+          (mesh.points[q] - o).cross(mesh.points[r] - o).dot(mesh.points[s] - o) / 6;
+    }
+    ASSERT_EQ(volumes.size(), e.volumes.size()) << e.owner;
+    for (const auto& [name, volume] : e.volumes) EXPECT_NEAR(volumes[name], volume, 1e-9) << name;
+  }
+}
+
+TEST(SurfaceRegions, ContactsTellGapsFromOverlaps) {
+  for (const double gap : {2e-6, -3e-6}) {
+    TriangleMesh second = unit_cube();
+    for (Vec3& p : second.points) p.x() += 1 + gap;
+    const MesherInput input = make_mesher_input({{"a", 1, unit_cube(), "a"}, {"b", 2, second, "b"}});
+    ASSERT_EQ(input.contacts.size(), 1U);
+    EXPECT_NEAR(input.contacts[0].area, 1, 1e-9);
+    EXPECT_EQ(input.contacts[0].pieces, 1U);
+    EXPECT_NEAR(input.contacts[0].largest_gap, std::max(0.0, gap), 1e-12);
+    EXPECT_NEAR(input.contacts[0].largest_overlap, std::max(0.0, -gap), 1e-12);
+  }
+}
+
 TEST(SurfaceRegions, BodiesThatCrossAreNamedOrRefused) {
   TriangleMesh second = unit_cube();
   for (Vec3& p : second.points) p += Vec3(0.5, 0.25, 0.25);

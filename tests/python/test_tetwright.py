@@ -128,6 +128,7 @@ def test_options_and_stats(ball):
     two = tetwright.mesh(ball, resolution=16, layer={"skin": 0.2}, feature_angle="off")
     assert set(two.material_names.values()) == {"ball", "skin"}
     assert not two.interfaces.on_boundary.all()
+    assert not two.interfaces.on_sheet.any()
 
 
 def test_simplify_improve_and_check(ball, prepared):

@@ -119,7 +119,7 @@ struct Workbench {
                 1);
       for (int f = 0; f < 4; ++f) {
         const Index other = mesh.neighbour(t, f);
-        if (other != no_index && (other < t || mesh.region(other) == mesh.region(t))) continue;
+        if (!mesh.link(t, f).is_interface() || (other != no_index && other < t)) continue;
         Triangle ids;
         for (int k = 0; k < 3; ++k) ids[k] = mesh.original(p[tet_faces[f][k]]);
         std::sort(ids.begin(), ids.end());

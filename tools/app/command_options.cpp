@@ -209,8 +209,12 @@ void add_material_options(CLI::App& app, CommandLine& c) {
       ->default_str("0.001%");
   add_rule<OverlapRule>(
       app, "--on-overlap", c.options.bodies.overlap,
-      {{"later", OverlapRule::later}, {"error", OverlapRule::error}},
-      "Give a volume that two crossing bodies claim to: later (the later one), or refuse it: error");
+      {{"later", OverlapRule::later},
+       {"first", OverlapRule::first},
+       {"material", OverlapRule::material},
+       {"error", OverlapRule::error}},
+      "Give a volume that two crossing bodies claim to: later (the later one), first (the earlier one), "
+      "material (one of its own, A+B), or refuse it: error");
   add_rule<RegionRule>(
       app, "--regions", c.options.bodies.regions.rule,
       {{"cells", RegionRule::cells}, {"outer", RegionRule::outer}},

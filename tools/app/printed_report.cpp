@@ -38,6 +38,16 @@ std::string volume_line(const VolumeReport& v) {
   return printable(line);
 }
 
+/// Line such as "sheet 'baffle': 120 triangles, area 36, 1 piece; border of length 24 in 1 piece".
+std::string sheet_line(const SheetStatistics& s) {
+  const auto pieces = [](std::size_t n) { return text("%zu piece", n) + (n == 1 ? "" : "s"); };
+  return printable("sheet " + in_quotes(s.name) + ": " +
+                   text("%zu triangles, area %.6g, ", s.triangles, s.area) + pieces(s.pieces) + "; " +
+                   (s.border_pieces == 0 ? "closed"
+                                         : "border of length " + text("%.6g", s.border_length) + " in " +
+                                               pieces(s.border_pieces)));
+}
+
 /// Line such as "features of 'part': 12 patches, since edges turn like those of a part".
 std::string feature_line(const FeatureReport& f) {
   using Verdict = SurfacePatches::Verdict;
@@ -83,6 +93,19 @@ std::string patches_line(const std::vector<PatchComparison>& patches) {
   return printable(line);
 }
 
+/// A table of the faces that bodies share.
+void print_contacts(const std::vector<ContactReport>& contacts) {
+  constexpr std::size_t max_rows = 20;
+  if (contacts.empty()) return;
+  std::printf("%-26s%16s%10s%16s%16s\n", "contacts", "area", "pieces", "largest gap", "largest overlap");
+  for (std::size_t i = 0; i < std::min(max_rows, contacts.size()); ++i) {
+    const ContactReport& c = contacts[i];
+    std::printf("%-26s%16.6g%10zu%16.3g%16.3g\n", printable(c.first + " - " + c.second).c_str(), c.area,
+                c.pieces, c.largest_gap, c.largest_overlap);
+  }
+  if (contacts.size() > max_rows) std::printf("and %zu more\n", contacts.size() - max_rows);
+}
+
 }  // namespace
 
 void print_report(const CommandLine& line, const PrepareReport& run) {
@@ -113,6 +136,9 @@ void print_report(const CommandLine& line, const PrepareReport& run) {
   if (run.volume) std::printf("%s\n", volume_line(*run.volume).c_str());
   for (const FeatureReport& f : run.features) std::printf("%s\n", feature_line(f).c_str());
   if (!run.patches.empty()) std::printf("%s\n", patches_line(run.patches).c_str());
+  print_contacts(run.contacts);
+  if (run.result)
+    for (const SheetStatistics& s : run.result->sheets) std::printf("%s\n", sheet_line(s).c_str());
   if (run.crease_comparison) {
     const CreaseComparison& c = *run.crease_comparison;
     std::printf("creases within %.3g %% of the diagonal, 99 %% of them within %.3g %%; %zu of %zu corners\n",

@@ -25,6 +25,7 @@ using Solids = std::unordered_map<MaterialTag, std::vector<Triangle>>;
 Solids solids_of(const TetMesh& mesh) {
   Solids solids;
   for (const InterfaceTriangle& t : mesh.interfaces) {
+    if (t.is_sheet()) continue;
     solids[t.material].push_back(t.ids);
     if (t.other) solids[*t.other].push_back({t.ids[0], t.ids[2], t.ids[1]});
   }

@@ -68,6 +68,7 @@ TetMesh compared_part(const TetMesh& mesh, bool with_interfaces, SurfaceComparis
   TetMesh part = compared_tets(mesh, c);
   std::vector<InterfaceTriangle> all =
       c.outside_tets > 0 || c.inverted ? find_interfaces(part) : mesh.interfaces;
+  std::erase_if(all, [](const InterfaceTriangle& t) { return t.is_sheet(); });
   for (InterfaceTriangle& t : all) {
     t.patch = 0;
     if (!with_interfaces && !t.other) t.material = 0;

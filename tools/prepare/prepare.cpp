@@ -41,8 +41,10 @@ Prepared mesh_from_scans(std::vector<Input> inputs, PrepareRun& run) {
   DenseMesh dense = make_dense_mesh(read_scan(std::move(inputs), run), run);
   // The result for a segmented volume is compared with its dense mesh.
   if (!dense.surface) refer_to(dense.mesh, "the dense mesh", run, result);
+  SurfaceToFollow surface = follow(*dense.reference);
+  if (run.options.order >= 2) follow_sheets(surface, dense.mesh);
   result.mesh = simplify_to_target(std::move(dense.mesh), dense.reference.get(), dense.surface.get(), run);
-  make_second_order(result.mesh, follow(*dense.reference), run);
+  make_second_order(result.mesh, surface, run);
   dense.reference.reset();  // frees memory for comparing and writing the mesh
   if (dense.surface && run.options.keep.reference) {
     result.reference = std::move(dense.surface);

@@ -240,6 +240,8 @@ MesherInput read_surfaces(std::vector<Input>& inputs, PrepareRun& run) {
   std::vector<Diagnostic>& all = run.report.diagnostics;
   all.insert(all.end(), input.findings.begin(), input.findings.end());
   run.report.patches = patches_of_input(input);
+  run.report.contacts = input.contacts;
+  run.report.overlaps = input.overlaps;
   return input;
 }
 

@@ -137,6 +137,8 @@ nlohmann::json topology_json(const Topology& t, const std::map<MaterialTag, std:
   for (const auto& [pair, surface] : t.interfaces)
     j["interfaces"].push_back(
         {{"materials", pair_json(pair)}, {"components", surface.components}, {"euler", surface.euler}});
+  for (const auto& [name, sheet] : t.sheets)
+    j["sheets"].push_back({{"name", name}, {"components", sheet.components}, {"euler", sheet.euler}});
   if (t.touching_fans) j["touching_fans"] = *t.touching_fans;
   if (t.junction_curves)
     j["junction_curves"] = {{"components", t.junction_curves->components},
@@ -159,19 +161,27 @@ nlohmann::json mesh_json(const MeshStatistics& m, const std::map<MaterialTag, st
     interfaces.push_back(
         {{"materials", pair_json(pair)}, {"triangles", interface.triangles}, {"area", interface.area}});
   }
-  return {{"tets", m.tets},
-          {"points", m.points},
-          {"interfaces", interfaces},
-          {"junction_edges", m.junction_edges},
-          {"materials", materials},
-          {"volume", m.volume},
-          {"min_solid_angle", m.min_solid_angle},
-          {"mean_solid_angle", m.mean_solid_angle},
-          {"threshold", threshold},
-          {"percent_below_threshold", m.below_percent},
-          {"min_dihedral", m.min_dihedral},
-          {"max_dihedral", m.max_dihedral},
-          {"histogram", m.histogram.counts}};
+  nlohmann::json j = {{"tets", m.tets},
+                      {"points", m.points},
+                      {"interfaces", interfaces},
+                      {"junction_edges", m.junction_edges},
+                      {"materials", materials},
+                      {"volume", m.volume},
+                      {"min_solid_angle", m.min_solid_angle},
+                      {"mean_solid_angle", m.mean_solid_angle},
+                      {"threshold", threshold},
+                      {"percent_below_threshold", m.below_percent},
+                      {"min_dihedral", m.min_dihedral},
+                      {"max_dihedral", m.max_dihedral},
+                      {"histogram", m.histogram.counts}};
+  for (const SheetStatistics& s : m.sheets)
+    j["sheets"].push_back({{"name", s.name},
+                           {"triangles", s.triangles},
+                           {"area", s.area},
+                           {"pieces", s.pieces},
+                           {"border_length", s.border_length},
+                           {"border_pieces", s.border_pieces}});
+  return j;
 }
 
 nlohmann::json input_json(const PrepareReport& run) {
@@ -297,6 +307,29 @@ nlohmann::json patches_json(const std::vector<PatchComparison>& all) {
   return j;
 }
 
+nlohmann::json contacts_json(const std::vector<ContactReport>& all) {
+  nlohmann::json j = nlohmann::json::array();
+  for (const ContactReport& c : all)
+    j.push_back({{"first", c.first},
+                 {"second", c.second},
+                 {"area", c.area},
+                 {"pieces", c.pieces},
+                 {"largest_gap", c.largest_gap},
+                 {"largest_overlap", c.largest_overlap}});
+  return j;
+}
+
+nlohmann::json overlaps_json(const std::vector<OverlapReport>& all) {
+  nlohmann::json j = nlohmann::json::array();
+  for (const OverlapReport& o : all)
+    j.push_back({{"first", o.first},
+                 {"second", o.second},
+                 {"volume", o.volume},
+                 {"owner", o.owner},
+                 {"place", place_json(o.place)}});
+  return j;
+}
+
 /// Adds how the dense mesh was made to its statistics.
 void add_mesher_json(const MesherReport& m, nlohmann::json& dense) {
   dense["cell_size"] = m.cell_size;
@@ -389,6 +422,8 @@ std::string stats_json(const CommandRun& ended) {
   if (run.mesher) j["fidelity"] = solids_json(run.solids);
   if (!run.features.empty()) j["features"] = features_json(run.features);
   if (!run.patches.empty()) j["patches"] = patches_json(run.patches);
+  if (!run.contacts.empty()) j["contacts"] = contacts_json(run.contacts);
+  if (!run.overlaps.empty()) j["overlaps"] = overlaps_json(run.overlaps);
   if (run.deviation)
     j["tolerance"] = {{"distance", run.tolerance},
                       {"held", run.deviation->upper() <= run.tolerance && run.lost_area() == 0},

@@ -31,6 +31,7 @@ enum class DiagnosticCode : std::uint8_t {
   edges_too_short,
   sizes_missed,
   solid_changed,
+  sheets_changed,
   thin_walls_changed,
   creases_changed,
   patches_lost,
@@ -103,6 +104,7 @@ enum class DiagnosticCode : std::uint8_t {
   boundary_points_non_manifold,
   point_star_split,
   self_intersections,
+  sheet_faces_misplaced,
   topology_differs,
   tolerance_exceeded,
   // Runs without a result.

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "tetwright/diagnostic.h"
+#include "tetwright/sheets.h"
 #include "tetwright/surface_mesh.h"
 #include "tetwright/tet_mesh.h"
 
@@ -252,8 +253,9 @@ struct MeshStatistics {
   QualityHistogram histogram;
   DihedralHistogram dihedrals;
   // Computed from TetMesh::interfaces; empty if those are empty.
-  std::map<MaterialPair, InterfaceStatistics> interfaces;
-  std::size_t junction_edges = 0;  ///< edges shared by three or more interface triangles
+  std::map<MaterialPair, InterfaceStatistics> interfaces;  ///< without sheets
+  std::vector<SheetStatistics> sheets;
+  std::size_t junction_edges = 0;  ///< edges shared by three or more interface triangles, sheets included
 };
 
 /// Computes the statistics. Parallel; the result is the same for any number of threads and on every machine.
@@ -323,7 +325,8 @@ struct Topology {
   // Empty for a mesh of one material, since `domain` describes it.
   std::map<MaterialTag, Solid> materials;
   std::map<Pair, Surface> interfaces;
-  std::optional<Count> touching_fans;  ///< surplus fans of boundary and interface triangles
+  std::map<std::string, Surface> sheets;  ///< by SheetStatistics::name
+  std::optional<Count> touching_fans;     ///< surplus fans of boundary and interface triangles
   std::optional<Curves> junction_curves;
 
   bool operator==(const Topology&) const = default;
@@ -345,7 +348,7 @@ std::vector<std::string> topology_lines(const Topology& topology);
 /// One line for each part that differs, such as "interface 1|2: before components 1, euler 0; after missing".
 std::vector<std::string> topology_differences(const Topology& before, const Topology& after);
 
-/// Surface that the faces of second-order tets follow. Both functions return the nearest point within a
+/// Surface that the faces of second-order tets follow. The functions return the nearest point within a
 /// distance (input units), or std::nullopt; they may be called concurrently.
 struct SurfaceToFollow {
   /// Projects onto a patch of the interface between two regions.
@@ -353,15 +356,21 @@ struct SurfaceToFollow {
   /// Projects onto the curves where patches or more than two regions meet; null: edges on these curves stay
   /// straight.
   std::function<std::optional<Vec3>(const Vec3&, double max_distance)> onto_crease;
+  /// Projects onto the borders of sheets and the curves where they meet anything else; null: these edges stay
+  /// straight.
+  std::function<std::optional<Vec3>(const Vec3&, double max_distance)> onto_sheet_curve;
 };
 
-/// Makes tets follow a reference surface.
+/// Makes tets follow a reference surface. Sheets stay straight: a reference does not have them.
 /// \pre `reference` outlives the result
 SurfaceToFollow follow(const ReferenceSurface& reference);
 
 /// Makes tets follow the interfaces of a mesh with their patches, and the edges where patches meet. Copies
 /// its input.
 SurfaceToFollow follow_interfaces(const TetMesh& mesh);
+
+/// Makes tets follow the sheets of a mesh in addition to `surface`. Copies its input.
+void follow_sheets(SurfaceToFollow& surface, const TetMesh& mesh);
 
 struct CurvingReport {
   std::size_t edges = 0;       ///< edges of interfaces

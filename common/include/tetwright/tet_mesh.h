@@ -49,18 +49,21 @@ struct SurfaceRegion {
   auto operator<=>(const SurfaceRegion&) const = default;
 };
 
-/// The two regions at a face: the smaller tag first; outside is std::nullopt and second.
+/// The two regions at a face: the smaller tag first; outside is std::nullopt and second. Equal at a sheet.
 using MaterialPair = std::pair<MaterialTag, std::optional<MaterialTag>>;
 
-/// A face between two materials or between a material and outside.
+/// A face between two materials or between a material and outside, or a face of a sheet: an inner face of a
+/// mesh with the same material on both sides, such as a baffle, a membrane or a fracture without thickness.
 struct InterfaceTriangle {
-  Triangle ids;                      ///< indices into points; the normal points out of `material`
-  MaterialTag material;              ///< on the side that the normal points away from
-  std::optional<MaterialTag> other;  ///< on the other side: a larger tag, or std::nullopt for outside
+  Triangle ids;          ///< indices into points; the normal points out of `material`
+  MaterialTag material;  ///< on the side that the normal points away from
+  /// On the other side: a larger tag, std::nullopt for outside, or `material` for a sheet.
+  std::optional<MaterialTag> other;
   /// Patch of the interface; points where patches meet stay on the curve between them.
   std::uint16_t patch = 0;
 
   MaterialPair pair() const { return {material, other}; }
+  bool is_sheet() const { return other == material; }
   bool operator==(const InterfaceTriangle&) const = default;
 };
 
@@ -85,9 +88,12 @@ struct TetMesh {
   std::vector<Tet> tets;                              ///< indices into points
   std::vector<MaterialTag> materials;                 ///< one tag for each tet
   std::map<MaterialTag, std::string> material_names;  ///< only materials that have a name
-  /// Result of find_interfaces() (mesh_quality.h) for this mesh, or empty. Readers leave it empty unless a
-  /// file has groups of faces; mesher/ and simplify/ fill it. Code that renumbers points or tets, or changes
-  /// materials, must clear or recompute it.
+  /// Result of find_interfaces() (mesh_quality.h) for this mesh, followed by the faces of its sheets; or
+  /// empty. Readers leave it empty unless a file has groups of faces; mesher/ and simplify/ fill it. Code
+  /// that renumbers points or tets, or changes materials, must clear or recompute it. The tets alone do not
+  /// contain the sheets: interfaces_with_sheets() (sheets.h) recomputes the rest and keeps them. A sheet's
+  /// faces are oriented consistently in each connected piece; the direction of the normal is arbitrary. Its
+  /// patches belong to the pair (material, material).
   std::vector<InterfaceTriangle> interfaces = {};
   /// Region of each interface patch that belongs to one.
   std::map<InterfacePatch, SurfaceRegion> patch_groups = {};

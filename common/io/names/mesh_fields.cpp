@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "common/io/text/text_scanner.h"
@@ -99,6 +100,12 @@ std::vector<std::string> field_names_to_write(const std::vector<MeshField>& fiel
     names.push_back(unique);
   }
   return names;
+}
+
+MeshField with_triangles(MeshField field, std::size_t triangles) {
+  field.values.resize(field.values.size() + triangles * static_cast<std::size_t>(field.components),
+                      field.integer ? 0.0 : std::numeric_limits<double>::quiet_NaN());
+  return field;
 }
 
 bool all_whole(const MeshField& field) {

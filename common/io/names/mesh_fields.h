@@ -25,6 +25,9 @@ std::vector<std::string> field_names_to_write(const std::vector<MeshField>& fiel
                                               std::vector<std::string> taken,
                                               std::string (*form)(const std::string& name) = nullptr);
 
+/// Extends a field of the tets by values for `triangles` more cells: 0 in integer fields, otherwise NaN.
+MeshField with_triangles(MeshField field, std::size_t triangles);
+
 /// Whether every value is whole and exactly represented (below 2^53 in absolute value).
 bool all_whole(const MeshField& field);
 

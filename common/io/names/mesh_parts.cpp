@@ -21,6 +21,12 @@ std::string name_of_tag(MaterialTag tag, const std::map<MaterialTag, std::string
   return known != names.end() && !known->second.empty() ? known->second : "material_" + std::to_string(tag);
 }
 
+/// Whether two triangles with the same vertices have the same orientation.
+bool equally_oriented(const Triangle& a, const Triangle& b) {
+  const auto first = static_cast<std::size_t>(std::find(b.begin(), b.end(), a[0]) - b.begin());
+  return a[1] == b[(first + 1) % 3];
+}
+
 }  // namespace
 
 NameRules printable_names() { return {.form = printable_name}; }
@@ -127,7 +133,12 @@ std::vector<TetFace> faces_of_tets(const TetMesh& mesh) {
       if (!flagged[tet[corners[0]]] || !flagged[tet[corners[1]]] || !flagged[tet[corners[2]]]) continue;
       const Triangle ids = sorted_face(tet, f).vertices;
       const auto at = std::lower_bound(wanted.begin(), wanted.end(), std::pair(ids, std::size_t{0}));
-      if (at != wanted.end() && at->first == ids && mesh.interfaces[at->second].material == mesh.materials[t])
+      if (at == wanted.end() || at->first != ids) continue;
+      const InterfaceTriangle& face = mesh.interfaces[at->second];
+      // A sheet has its material on both sides: choose the tet behind the face.
+      if (face.material == mesh.materials[t] &&
+          (!face.is_sheet() ||
+           equally_oriented(face.ids, {tet[corners[0]], tet[corners[1]], tet[corners[2]]})))
         out[at->second] = {static_cast<Index>(t), static_cast<std::uint8_t>(f)};
     }
   }

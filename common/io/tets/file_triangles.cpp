@@ -12,12 +12,17 @@
 #include "common/unique_names.h"
 #include "tetwright/error.h"
 #include "tetwright/mesh_quality.h"
+#include "tetwright/sheets.h"
 
 namespace tetwright {
 
 namespace {
 
 constexpr std::size_t max_groups = 0xffff;
+
+/// A group with a larger share of the faces between two tets of one material lists the faces of the tets; it
+/// is no sheet.
+constexpr double max_sheet_share = 0.5;
 
 Triangle sorted(Triangle ids) {
   std::sort(ids.begin(), ids.end());
@@ -37,8 +42,8 @@ class TriangleTaker {
 
   void take() {
     for (std::size_t i = 0; i < listed_.triangles.size(); ++i) add(i);
-    check_others();
     count_groups();
+    take_others();
     find_derived();
     for (const std::int64_t number : derived_) restored_ += groups_.at(number).triangles;
     set_patches();
@@ -82,8 +87,9 @@ class TriangleTaker {
       ++repeated_;
   }
 
-  /// Checks that triangles of a group that are not on the boundary or an interface are inside a material.
-  void check_others() const {
+  /// Takes the triangles that are not on the boundary or an interface. Those of a group that has none there
+  /// are sheets.
+  void take_others() {
     if (others_.empty()) return;
     const TetMesh& mesh = read_.mesh;
     std::vector<std::uint8_t> candidates(mesh.points.size(), 0);
@@ -96,6 +102,38 @@ class TriangleTaker {
       const auto face = std::lower_bound(faces.begin(), faces.end(), ids,
                                          [](const MeshFace& f, const Triangle& t) { return f.ids < t; });
       if (face == faces.end() || face->ids != ids) fail(i);
+      const std::int64_t number = listed_.groups[i];
+      if (face->count != 2 || groups_.contains(number)) {
+        ++inside_groups_;
+        continue;
+      }
+      const MaterialTag material = mesh.materials[face->first];
+      const auto [known, added] = sheet_of_face_.try_emplace(ids, number);
+      if (added)
+        sheets_[number].push_back({ids, material, material});
+      else
+        ++repeated_;
+    }
+    drop_lists_of_all_faces();
+  }
+
+  /// Drops groups that list most faces of the tets.
+  void drop_lists_of_all_faces() {
+    const TetMesh& mesh = read_.mesh;
+    const std::size_t between_materials = static_cast<std::size_t>(
+        std::count_if(interfaces_.begin(), interfaces_.end(),
+                      [](const InterfaceTriangle& t) { return t.other.has_value(); }));
+    const std::size_t boundary = interfaces_.size() - between_materials;
+    const std::size_t sides = 4 * mesh.tets.size();
+    if (sides < boundary + 2 * between_materials) return;  // the mesh is not valid
+    const auto inner = static_cast<double>((sides - boundary) / 2 - between_materials);
+    for (auto sheet = sheets_.begin(); sheet != sheets_.end();) {
+      if (static_cast<double>(sheet->second.size()) > max_sheet_share * inner && sheet->second.size() > 1) {
+        inside_groups_ += sheet->second.size();
+        sheet = sheets_.erase(sheet);
+      } else {
+        ++sheet;
+      }
     }
   }
 
@@ -192,7 +230,9 @@ class TriangleTaker {
     std::vector<std::int64_t> numbers;
     for (const auto& [number, group] : groups_)
       if (!derived_.contains(number)) numbers.push_back(number);
+    for (const auto& [number, faces] : sheets_) numbers.push_back(number);
     if (numbers.empty()) return;
+    std::sort(numbers.begin(), numbers.end());
     if (numbers.size() > max_groups)
       throw InputError(file_ + ": its triangles are in " + std::to_string(numbers.size()) + " " +
                        group_word_ + "s; at most " + std::to_string(max_groups) +
@@ -202,11 +242,21 @@ class TriangleTaker {
     for (std::size_t f = 0; f < group_of_.size(); ++f) {
       const auto number = std::lower_bound(numbers.begin(), numbers.end(), group_of_[f]);
       if (number == numbers.end() || *number != group_of_[f]) continue;
-      InterfaceTriangle& t = mesh.interfaces[f];
-      t.patch = static_cast<std::uint16_t>(number - numbers.begin() + 1);
-      const auto name = listed_.names.find(*number);
-      mesh.patch_groups[{t.pair(), t.patch}] = {*number, name == listed_.names.end() ? "" : name->second};
+      set_patch(mesh.interfaces[f], static_cast<std::size_t>(number - numbers.begin()), *number);
     }
+    std::vector<InterfaceTriangle> sheets;
+    for (auto& [number, faces] : sheets_) {
+      const auto at = std::lower_bound(numbers.begin(), numbers.end(), number);
+      for (InterfaceTriangle& t : faces) set_patch(t, static_cast<std::size_t>(at - numbers.begin()), number);
+      sheets.insert(sheets.end(), faces.begin(), faces.end());
+    }
+    append_sheets(mesh.interfaces, std::move(sheets));
+  }
+
+  void set_patch(InterfaceTriangle& t, std::size_t index, std::int64_t number) {
+    t.patch = static_cast<std::uint16_t>(index + 1);
+    const auto name = listed_.names.find(number);
+    read_.mesh.patch_groups[{t.pair(), t.patch}] = {number, name == listed_.names.end() ? "" : name->second};
   }
 
   void note() {
@@ -218,7 +268,7 @@ class TriangleTaker {
             (groups == 0 ? "" : " of " + std::to_string(groups) + (groups == 1 ? " group" : " groups")),
         restored_, true);
     add("triangles inside a material or not on any tet", without_group_, false);
-    add("triangles of " + group_word_ + "s inside a material", others_.size(), false);
+    add("triangles of " + group_word_ + "s inside a material", inside_groups_, false);
     add("triangles that are already in a " + group_word_, repeated_, false);
   }
 
@@ -231,6 +281,10 @@ class TriangleTaker {
   std::map<MaterialPair, FacesOfPair> pairs_;
   std::set<std::int64_t> derived_;   ///< derived groups
   std::vector<std::size_t> others_;  ///< triangles of a group that are not on an interface
+  /// Faces of groups that are sheets, by group.
+  std::map<std::int64_t, std::vector<InterfaceTriangle>> sheets_;
+  std::map<Triangle, std::int64_t> sheet_of_face_;
+  std::size_t inside_groups_ = 0;  ///< triangles of groups inside a material that are no sheets
   std::size_t restored_ = 0, without_group_ = 0, repeated_ = 0;
 };
 

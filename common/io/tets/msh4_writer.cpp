@@ -113,6 +113,7 @@ class Msh4Writer {
       Entity& surface =
           surfaces.try_emplace(number, Entity{surface_dimension, number, {}, {}, {}}).first->second;
       surface.elements.push_back(i);
+      if (t.is_sheet()) continue;  // it bounds no volume
       volume(volumes, t.material).bounds.insert(number);
       if (t.other) volume(volumes, *t.other).bounds.insert(-number);
     }

@@ -68,14 +68,6 @@ void write_fields(TextWriter& out, const std::vector<MeshField>& fields, std::ve
   }
 }
 
-/// Extends the fields of the tets by values for `triangles` more cells.
-std::vector<MeshField> fields_of_cells(std::vector<MeshField> fields, std::size_t triangles) {
-  for (MeshField& field : fields)
-    field.values.resize(field.values.size() + triangles * static_cast<std::size_t>(field.components),
-                        field.integer ? 0.0 : std::numeric_limits<double>::quiet_NaN());
-  return fields;
-}
-
 }  // namespace
 
 void write_vtk(const MeshToWrite& written, const ByteSink& sink) {
@@ -127,8 +119,9 @@ void write_vtk(const MeshToWrite& written, const ByteSink& sink) {
     for (std::size_t t = 0; t < tets; ++t) out << "0\n";
     for (const std::int64_t number : surface_of) out << number << '\n';
   }
-  write_fields(out, fields_of_cells(mesh.cell_fields, triangles), {"material", vtk_surface_field},
-               tets + triangles);
+  std::vector<MeshField> fields = mesh.cell_fields;
+  for (MeshField& field : fields) field = with_triangles(std::move(field), triangles);
+  write_fields(out, fields, {"material", vtk_surface_field}, tets + triangles);
   if (!mesh.point_fields.empty()) {
     out << "POINT_DATA " << written.nodes() << '\n';
     write_fields(out, written.node_fields(), {}, written.nodes());

@@ -15,10 +15,13 @@
 #include "common/io/encodings/vtu_arrays.h"
 #include "common/io/encodings/vtu_data.h"
 #include "common/io/names/mesh_fields.h"
+#include "common/io/names/mesh_parts.h"
 #include "common/io/text/text_scanner.h"
 #include "common/io/text/xml_text.h"
+#include "common/mesh/boundary_groups.h"
 #include "common/unique_names.h"
 #include "tetwright/error.h"
+#include "tetwright/sheets.h"
 
 namespace tetwright {
 
@@ -40,16 +43,18 @@ class VtuReader {
     for (std::size_t t = 0; t < midside_of_tets_.size(); t += midside_per_tet)
       midside_.add_tet(std::span(midside_of_tets_).subspan(t, midside_per_tet));
     read_names(pieces[0].parent());
-    std::vector<Triangle> no_triangles;
-    midside_.remove_from(result_, no_triangles);
+    for (std::size_t t = 0; t < midside_of_triangles_.size(); t += midside_per_triangle)
+      midside_.add_triangle(std::span(midside_of_triangles_).subspan(t, midside_per_triangle));
+    midside_.remove_from(result_, triangles_.triangles);
     take_material(result_, options_, name_);
+    take_triangles(triangles_, "surface", name_, result_);
     note_dropped_arrays(pieces[0].parent(), pieces);
     rounded_.append_to(result_.dropped);
     return std::move(result_);
   }
 
  private:
-  static constexpr std::size_t midside_per_tet = 6;
+  static constexpr std::size_t midside_per_tet = 6, midside_per_triangle = 3;
   /// VTK's array that marks points and cells that another piece also has.
   static constexpr const char* ghost_marks = "vtkGhostType";
 
@@ -65,12 +70,35 @@ class VtuReader {
     mesh.points.insert(mesh.points.end(), of_piece.begin(), of_piece.end());
     const std::vector<std::size_t> tet_to_cell = read_cells(piece, points, cells);
     cells_ += cells;
+    const bool has_surfaces = take_surfaces(piece, cells);
     add_fields(mesh.point_fields, data_.fields(piece.child("PointData"), points, nullptr, &rounded_),
                first_points_.back(), points);
-    add_fields(mesh.cell_fields,
-               data_.fields(piece.child("CellData"), cells,
-                            tet_to_cell.size() < cells ? &tet_to_cell : nullptr, &rounded_),
-               first_tet, mesh.tets.size() - first_tet);
+    std::vector<MeshField> cell_fields = data_.fields(
+        piece.child("CellData"), cells, tet_to_cell.size() < cells ? &tet_to_cell : nullptr, &rounded_);
+    if (has_surfaces)
+      std::erase_if(cell_fields, [](const MeshField& field) { return field.name == vtk_surface_field; });
+    add_fields(mesh.cell_fields, std::move(cell_fields), first_tet, mesh.tets.size() - first_tet);
+  }
+
+  /// Takes the triangles of a piece of a file that this program wrote, by the field that gives the numbers of
+  /// their surfaces. False if there is no such field, or no triangle.
+  bool take_surfaces(pugi::xml_node piece, std::size_t cells) {
+    const std::vector<FileTriangle> triangles = std::move(triangles_of_piece_);
+    triangles_of_piece_.clear();
+    const pugi::xml_node node =
+        piece.child("CellData").find_child_by_attribute("DataArray", "Name", vtk_surface_field);
+    const std::string_view type = node.attribute("type").as_string();
+    if (triangles.empty() || !node || type.find("Int") == type.npos) return false;
+    if (node.attribute("NumberOfComponents").as_int(1) != 1) return false;
+    const std::vector<std::int64_t> numbers = data_.integers(node, cells);
+    data_.expect_size(node, numbers.size(), cells);
+    for (const FileTriangle& t : triangles) {
+      triangles_.add(t.corners, numbers[t.cell]);
+      if (t.quadratic)
+        midside_of_triangles_.insert(midside_of_triangles_.end(), t.midside.begin(), t.midside.end());
+      other_cells_.remove(t.quadratic ? element::quadratic_triangle.vtk : element::triangle.vtk);
+    }
+    return true;
   }
 
   /// Adds the fields of a piece. Fields that are missing in some piece are left out. A piece without items,
@@ -128,7 +156,16 @@ class VtuReader {
     const std::vector<std::int64_t> ghost = ghosts(piece, cell_count);
     const Index first_point = first_points_.back();
     std::vector<std::size_t> tet_to_cell;
+    const bool has_surfaces = static_cast<bool>(
+        piece.child("CellData").find_child_by_attribute("DataArray", "Name", vtk_surface_field));
     std::size_t begin = 0;
+    const auto node_of = [&](std::size_t c, std::size_t k) {
+      const std::uint32_t id = connectivity[begin + k];
+      if (id >= points)
+        data_.fail(connectivity_node, "cell " + std::to_string(c) + " refers to point " + std::to_string(id) +
+                                          " of " + std::to_string(points) + "; export the file again");
+      return first_point + id;
+    };
     for (std::size_t c = 0; c < cell_count; ++c) {
       const std::size_t end = offsets[c];
       if (end < begin || end > connectivity.size())
@@ -142,19 +179,20 @@ class VtuReader {
           data_.fail(offsets_node, "cell " + std::to_string(c) + " is a tet of " +
                                        std::to_string(end - begin) + " points; the file is damaged");
         std::array<Index, 4 + midside_per_tet> ids;
-        for (std::size_t k = 0; k < nodes; ++k) {
-          const std::uint32_t id = connectivity[begin + k];
-          if (id >= points)
-            data_.fail(connectivity_node, "cell " + std::to_string(c) + " refers to point " +
-                                              std::to_string(id) + " of " + std::to_string(points) +
-                                              "; export the file again");
-          ids[k] = first_point + id;
-        }
+        for (std::size_t k = 0; k < nodes; ++k) ids[k] = node_of(c, k);
         result_.mesh.tets.push_back({ids[0], ids[1], ids[2], ids[3]});
         if (nodes > 4) midside_of_tets_.insert(midside_of_tets_.end(), ids.begin() + 4, ids.end());
         tet_to_cell.push_back(c);
       } else {
         other_cells_.add(types[c], c);
+        // A triangle that is not one of this program's surfaces is only counted, whatever its points are.
+        if (is_vtk_triangle(types[c]) && has_surfaces && end - begin == vtk_element_type(types[c])->nodes) {
+          const bool quadratic = types[c] == element::quadratic_triangle.vtk;
+          FileTriangle t{c, quadratic, {node_of(c, 0), node_of(c, 1), node_of(c, 2)}, {}};
+          for (std::size_t k = 0; quadratic && k < midside_per_triangle; ++k)
+            t.midside[k] = node_of(c, 3 + k);
+          triangles_of_piece_.push_back(t);
+        }
       }
       begin = end;
     }
@@ -218,23 +256,35 @@ class VtuReader {
     for (Tet& tet : mesh.tets)
       for (Index& p : tet) p = to[p];
     for (Index& p : midside_of_tets_) p = to[p];
+    for (Index& p : midside_of_triangles_) p = to[p];
+    for (Triangle& t : triangles_.triangles)
+      for (Index& p : t) p = to[p];
   }
 
-  void read_names(pugi::xml_node grid) {
-    const pugi::xml_node node =
-        grid.child("FieldData").find_child_by_attribute("DataArray", "Name", vtk_material_names);
-    if (!node) return;
+  /// Names in an array of the dataset, with their numbers.
+  std::vector<std::pair<std::int64_t, std::string>> names_in(pugi::xml_node grid, const char* array) const {
+    const pugi::xml_node node = grid.child("FieldData").find_child_by_attribute("DataArray", "Name", array);
+    if (!node) return {};
     std::string text;
     // Compressed data may be larger than the file, but names hardly are.
     for (std::int64_t c : data_.integers(node, file_size_)) text += static_cast<char>(c);
-    for (auto& [tag, name] : parse_vtk_names(text, vtk_material_names, name_))
+    return parse_vtk_names(text, array, name_);
+  }
+
+  void read_names(pugi::xml_node grid) {
+    for (auto& [tag, name] : names_in(grid, vtk_material_names))
       result_.mesh.material_names[checked_material(tag, name_, 0)] = name;
+    if (triangles_.triangles.empty()) return;
+    for (auto& [number, name] : names_in(grid, vtk_surface_names)) triangles_.names[number] = name;
   }
 
   /// Counts arrays of the whole dataset and text arrays as dropped.
   void note_dropped_arrays(pugi::xml_node grid, const std::vector<pugi::xml_node>& pieces) {
     const auto is_array = [](pugi::xml_node node) {
       return std::string_view(node.name()) == "DataArray" || std::string_view(node.name()) == "Array";
+    };
+    const auto is_of_names = [&](const std::string& array) {
+      return array == vtk_material_names || (array == vtk_surface_names && !triangles_.triangles.empty());
     };
     const auto name_of = [](pugi::xml_node node) { return field_name(node.attribute("Name").as_string()); };
     std::vector<std::string> of_dataset, text;
@@ -243,7 +293,7 @@ class VtuReader {
     parents.insert(parents.end(), pieces.begin(), pieces.end());
     for (const pugi::xml_node parent : parents)
       for (const pugi::xml_node node : parent.child("FieldData").children())
-        if (is_array(node) && !(parent == grid && name_of(node) == vtk_material_names))
+        if (is_array(node) && !(parent == grid && is_of_names(name_of(node))))
           of_dataset.push_back(name_of(node));
     for (const char* part : {"PointData", "CellData"})
       for (const pugi::xml_node node : pieces[0].child(part).children())
@@ -257,6 +307,14 @@ class VtuReader {
       result_.dropped.push_back({"duplicate points shared between pieces", joined_points_});
   }
 
+  /// A triangle of the piece that is being read.
+  struct FileTriangle {
+    std::size_t cell;
+    bool quadratic;
+    Triangle corners;
+    std::array<Index, midside_per_triangle> midside;
+  };
+
   VtuData data_;
   std::string name_;
   const ReadTetMeshOptions& options_;
@@ -264,6 +322,9 @@ class VtuReader {
   std::size_t cells_ = 0, ghost_cells_ = 0, joined_points_ = 0;
   std::vector<Index> first_points_;     ///< of each piece
   std::vector<Index> midside_of_tets_;  ///< for tets of ten nodes
+  std::vector<Index> midside_of_triangles_;
+  std::vector<FileTriangle> triangles_of_piece_;
+  FileTriangles triangles_;
   std::vector<std::string> field_names_of_some_pieces_;
   OtherVtkCells other_cells_;
   KindCounts rounded_;  ///< rounded integers of fields
@@ -286,6 +347,31 @@ void write_field(const ByteSink& sink, const MeshField& field, const std::string
     write(std::int64_t{}, "Int64");
 }
 
+/// The sheets of the mesh, without tets.
+TetMesh only_sheets(const TetMesh& mesh) {
+  TetMesh sheets;
+  sheets.interfaces = sheets_of(mesh);
+  for (const InterfaceTriangle& t : sheets.interfaces)
+    if (sheets.materials.empty() || sheets.materials.back() != t.material)
+      sheets.materials.push_back(t.material);
+  sheets.material_names = mesh.material_names;
+  sheets.patch_groups = mesh.patch_groups;
+  return sheets;
+}
+
+/// The faces of sheets, which are written as cells after the tets.
+struct SheetCells {
+  explicit SheetCells(const TetMesh& mesh) {
+    for (std::size_t i = 0; i < mesh.interfaces.size(); ++i)
+      if (mesh.interfaces[i].is_sheet()) faces.push_back(i);
+    if (faces.empty()) return;
+    const BoundaryGroups groups(only_sheets(mesh));
+    for (const std::size_t face : faces) numbers.push_back(groups.number_of(mesh.interfaces[face]));
+  }
+  std::vector<std::size_t> faces;     ///< indices into TetMesh::interfaces
+  std::vector<std::int64_t> numbers;  ///< of their surfaces
+};
+
 }  // namespace
 
 ReadTetMesh read_vtu(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options) {
@@ -300,6 +386,7 @@ std::string write_vtu(const MeshToWrite& written) {
 
 MeshParts vtu_parts(const TetMesh& mesh) {
   MeshParts parts;
+  parts.surfaces = names_of_parts(only_sheets(mesh), printable_names()).surfaces;
   UniqueNames names(printable_name);
   std::map<std::string, std::string> written;  // names stay equal if they are equal in the mesh
   for (const auto& [tag, name] : mesh.material_names) {
@@ -314,28 +401,46 @@ void write_vtu(const MeshToWrite& written, const ByteSink& sink) {
   const TetMesh& mesh = written.mesh;
   const MidsideNodes* midside = written.midside;
   sink(vtu_head("UnstructuredGrid"));
-  if (!mesh.material_names.empty()) {
+  const SheetCells sheets(mesh);
+  if (!mesh.material_names.empty() || !sheets.faces.empty()) {
+    const MeshParts parts = vtu_parts(mesh);
     std::vector<std::pair<std::int64_t, std::string>> names;
-    for (const MeshParts::Material& m : vtu_parts(mesh).materials) names.emplace_back(m.tag, m.name);
     sink("<FieldData>\n");
-    write_vtu_names(sink, vtk_material_names, names);
+    for (const MeshParts::Material& m : parts.materials) names.emplace_back(m.tag, m.name);
+    if (!names.empty()) write_vtu_names(sink, vtk_material_names, names);
+    names.clear();
+    for (const MeshParts::Surface& s : parts.surfaces) names.emplace_back(s.number, s.name);
+    if (!names.empty()) write_vtu_names(sink, vtk_surface_names, names);
     sink("</FieldData>\n");
   }
+  const std::size_t tets = mesh.tets.size(), cells = tets + sheets.faces.size();
   sink("<Piece NumberOfPoints=\"" + std::to_string(written.nodes()) + "\" NumberOfCells=\"" +
-       std::to_string(mesh.tets.size()) + "\">\n<Points>\n");
+       std::to_string(cells) + "\">\n<Points>\n");
   write_vtu_numbers(sink, "Float64", "Points", "NumberOfComponents=\"3\" ", 3 * written.nodes(),
                     [&](std::size_t i) { return written.node(i / 3)[static_cast<Eigen::Index>(i % 3)]; });
   sink("</Points>\n<Cells>\n");
-  const std::size_t of_tet = midside ? 10 : 4;
-  write_vtu_numbers(sink, "Int64", "connectivity", "", of_tet * mesh.tets.size(), [&](std::size_t i) {
-    const std::size_t t = i / of_tet, k = i % of_tet;
-    return k < 4 ? std::int64_t{mesh.tets[t][k]}
-                 : static_cast<std::int64_t>(mesh.points.size() + midside->of_tets[t][k - 4]);
+  const std::size_t of_tet = midside ? 10 : 4, of_triangle = midside ? 6 : 3;
+  const auto midside_node = [&](Index m) { return static_cast<std::int64_t>(mesh.points.size() + m); };
+  write_vtu_numbers(sink, "Int64", "connectivity", "", of_tet * tets + of_triangle * sheets.faces.size(),
+                    [&](std::size_t i) {
+                      if (i < of_tet * tets) {
+                        const std::size_t t = i / of_tet, k = i % of_tet;
+                        return k < 4 ? std::int64_t{mesh.tets[t][k]}
+                                     : midside_node(midside->of_tets[t][k - 4]);
+                      }
+                      const std::size_t face = sheets.faces[(i - of_tet * tets) / of_triangle],
+                                        k = (i - of_tet * tets) % of_triangle;
+                      return k < 3 ? std::int64_t{mesh.interfaces[face].ids[k]}
+                                   : midside_node(midside->of_faces[face][k - 3]);
+                    });
+  write_vtu_numbers(sink, "Int64", "offsets", "", cells, [&](std::size_t i) {
+    return static_cast<std::int64_t>(i < tets ? of_tet * (i + 1)
+                                              : of_tet * tets + of_triangle * (i + 1 - tets));
   });
-  write_vtu_numbers(sink, "Int64", "offsets", "", mesh.tets.size(),
-                    [&](std::size_t i) { return static_cast<std::int64_t>(of_tet * (i + 1)); });
-  write_vtu_numbers(sink, "UInt8", "types", "", mesh.tets.size(), [&](std::size_t) {
-    return static_cast<std::uint8_t>(midside ? element::quadratic_tet.vtk : element::tet.vtk);
+  write_vtu_numbers(sink, "UInt8", "types", "", cells, [&](std::size_t i) {
+    return static_cast<std::uint8_t>(i < tets
+                                         ? (midside ? element::quadratic_tet : element::tet).vtk
+                                         : (midside ? element::quadratic_triangle : element::triangle).vtk);
   });
   sink("</Cells>\n");
   if (!mesh.point_fields.empty()) {
@@ -346,10 +451,22 @@ void write_vtu(const MeshToWrite& written, const ByteSink& sink) {
     sink("</PointData>\n");
   }
   sink("<CellData Scalars=\"material\">\n");
-  write_vtu_numbers(sink, "Int32", "material", "", mesh.tets.size(),
-                    [&](std::size_t i) { return std::int32_t{mesh.materials[i]}; });
-  const std::vector<std::string> names = field_names_to_write(mesh.cell_fields, {"material"});
-  for (std::size_t f = 0; f < names.size(); ++f) write_field(sink, mesh.cell_fields[f], names[f]);
+  write_vtu_numbers(sink, "Int32", "material", "", cells, [&](std::size_t i) {
+    return std::int32_t{i < tets ? mesh.materials[i] : mesh.interfaces[sheets.faces[i - tets]].material};
+  });
+  std::vector<std::string> taken{"material"};
+  if (!sheets.faces.empty()) {
+    taken.emplace_back(vtk_surface_field);
+    write_vtu_numbers(sink, "Int32", vtk_surface_field, "", cells, [&](std::size_t i) {
+      return static_cast<std::int32_t>(i < tets ? 0 : sheets.numbers[i - tets]);
+    });
+  }
+  const std::vector<std::string> names = field_names_to_write(mesh.cell_fields, taken);
+  for (std::size_t f = 0; f < names.size(); ++f)
+    if (sheets.faces.empty())
+      write_field(sink, mesh.cell_fields[f], names[f]);
+    else
+      write_field(sink, with_triangles(mesh.cell_fields[f], sheets.faces.size()), names[f]);
   sink("</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
 }
 

@@ -135,8 +135,10 @@ struct MaterialLayer {
 
 /// Which body a point belongs to that several contain.
 enum class OverlapRule : std::uint8_t {
-  later,  ///< the last one: later bodies carve earlier ones
-  error   ///< bodies that cross are refused
+  later,     ///< the last one: later bodies carve earlier ones
+  first,     ///< the first one of bodies that cross; the last one of nested bodies
+  error,     ///< bodies that cross are refused
+  material,  ///< a body of its own, called a+b after bodies a and b that cross
 };
 
 /// How bodies that meet are joined.
@@ -187,16 +189,18 @@ struct SheetOptions {
 
 /// Faces that two bodies share.
 struct ContactReport {
-  std::string first, second;    ///< materials, in the order of the bodies
-  double area = 0;              ///< input units squared
-  std::size_t pieces = 0;       ///< connected by edges
-  double largest_distance = 0;  ///< gap or overlap that was closed, input units
+  std::string first, second;   ///< materials, in the order of the bodies
+  double area = 0;             ///< input units squared
+  std::size_t pieces = 0;      ///< connected by edges
+  double largest_gap = 0;      ///< that was closed, input units
+  double largest_overlap = 0;  ///< likewise
 };
 
 /// Two bodies that cross: neither contains the other.
 struct OverlapReport {
   std::string first, second;  ///< materials, in the order of the bodies
   double volume = 0;          ///< that both claimed, input units cubed
+  std::string owner;          ///< the material that it belongs to
   Vec3 place = Vec3::Zero();  ///< on the boundary of its largest part, input units
 };
 
@@ -256,7 +260,8 @@ enum class SurfaceFlaw : std::uint8_t {
 /// qualify_names()), and groups that have only a number are named after their surface.
 ///
 /// Closed bodies that meet are then joined (ContactOptions): their surfaces are cut along the curves in which
-/// they meet, and within the tolerance moved onto each other.
+/// they meet, and within the tolerance moved onto each other. With OverlapRule::material their common volumes
+/// are appended as bodies with the smallest free tags from 1 up.
 ///
 /// \param progress may be null
 /// \pre non-empty names differ, and so do tags

@@ -143,7 +143,8 @@ TEST(SurfaceImprint, TouchingBoxesOfOtherTessellationsShareOneSheet) {
     ASSERT_EQ(found.contacts.size(), 1U);
     EXPECT_EQ(found.contacts[0].pieces, 1U);
     EXPECT_NEAR(found.contacts[0].area, 0.35, 1e-5);
-    EXPECT_NEAR(found.contacts[0].largest_gap, std::abs(gap), 1e-9);
+    EXPECT_NEAR(found.contacts[0].largest_gap, std::max(0.0, gap), 1e-9);
+    EXPECT_NEAR(found.contacts[0].largest_overlap, std::max(0.0, -gap), 1e-9);
     EXPECT_TRUE(found.overlaps.empty());
     // Each body's own surface stays closed.
     for (std::size_t b = 0; b < 2; ++b) {

@@ -49,7 +49,7 @@ CheckReport examine(TetMesh& mesh, CommandRun& run) {
   for (const MeshFinding& f : check.findings)
     check.measurable &= f.code > DiagnosticCode::coordinates_not_finite;
   if (!check.measurable) return check;
-  mesh.interfaces = find_interfaces(mesh);
+  mesh.interfaces = interfaces_with_sheets(mesh);
   run.report.result = mesh_statistics(mesh, run.line.options.shapes.bound());
   run.report.material_names = mesh.material_names;
   return check;

@@ -2,10 +2,12 @@
 #include "tools/app/commands/unwritten.h"
 
 #include <algorithm>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "tetwright/io.h"
+#include "tetwright/sheets.h"
 
 namespace tetwright {
 
@@ -58,8 +60,21 @@ std::size_t named_patches(const PrepareReport& report) {
                     [](const PatchComparison& p) { return !p.group.name.empty(); }));
 }
 
+/// Number of patches that are sheets, which every format of tet meshes can hold.
+std::size_t sheet_patches(const PrepareReport& report, const TetMesh& mesh) {
+  std::set<SurfaceRegion> of_sheets;
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    if (t.is_sheet())
+      if (const auto group = mesh.patch_groups.find({t.pair(), t.patch}); group != mesh.patch_groups.end())
+        of_sheets.insert(group->second);
+  return static_cast<std::size_t>(
+      std::count_if(report.patches.begin(), report.patches.end(),
+                    [&](const PatchComparison& p) { return of_sheets.contains(p.group); }));
+}
+
 /// Adds a note about patches that neither the mesh file nor the --boundary file can hold.
-void find_unwritten_patches(const CommandLine& line, const TetFormatInfo& format, PrepareReport& report) {
+void find_unwritten_patches(const CommandLine& line, const TetFormatInfo& format, const TetMesh& mesh,
+                            PrepareReport& report) {
   const bool boundary_lacks =
       !line.outputs.boundary.empty() &&
       !written_surface_format(line.outputs.boundary, line.outputs.boundary_format).names;
@@ -74,7 +89,7 @@ void find_unwritten_patches(const CommandLine& line, const TetFormatInfo& format
   if (line.outputs.no_boundary)
     note("named patches", report.patches.size(), ", as --no-boundary asks");
   else if (!format.surfaces)
-    note("named patches", report.patches.size(), no_place);
+    note("named patches", report.patches.size() - sheet_patches(report, mesh), no_place);
   else if (!format.patch_names)
     note("names of patches", named_patches(report), no_place);
 }
@@ -96,7 +111,8 @@ void find_unwritten(const CommandLine& line, const TetMesh& mesh, PrepareReport&
   const auto note = [&](const std::string& what, std::size_t count, const std::string& why) {
     note_missing(shown(line.outputs.mesh), what, count, why, report);
   };
-  find_unwritten_patches(line, format, report);
+  find_unwritten_patches(line, format, mesh, report);
+  if (line.outputs.no_boundary) note("faces of sheets", sheets_of(mesh).size(), ", as --no-boundary asks");
   if (!format.names) note("names of materials", mesh.material_names.size(), no_place);
   if (!format.fields) note("fields", mesh.point_fields.size() + mesh.cell_fields.size(), no_place);
   find_name_changes(line, mesh, report);

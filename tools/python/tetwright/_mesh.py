@@ -45,7 +45,8 @@ def diagnostic_kinds() -> dict[str, DiagnosticKind]:
 
 
 class Interfaces:
-    """The faces between two materials, and between a material and the outside. Arrays are read-only."""
+    """The faces between two materials, and between a material and the outside, and those of sheets, which have
+    the same material on both sides. Arrays are read-only."""
 
     def __init__(self, core: _core.Mesh):
         self._core = core
@@ -94,6 +95,12 @@ class Interfaces:
     def on_boundary(self) -> np.ndarray:
         """(n,) bool, a copy: True if the other side is outside."""
         return self._core.interface_others()[1]
+
+    @property
+    def on_sheet(self) -> np.ndarray:
+        """(n,) bool, a copy: True for the face of a sheet, with the same material on both sides."""
+        other, on_boundary = self._core.interface_others()
+        return (other == self.material) & ~on_boundary
 
 
 class TetMesh:

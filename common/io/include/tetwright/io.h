@@ -114,6 +114,10 @@ struct FileTriangles {
 /// - or, if it has neither, its number, if BoundaryGroups gives the pair this number and all groups of the
 ///   file are derived.
 ///
+/// A group whose triangles all lie inside materials, with the same one on both sides, becomes a sheet. Other
+/// triangles inside a material are lost: those of groups that also have faces on the boundary or an
+/// interface, and groups of more than half of the faces inside materials, which list the faces of the tets.
+///
 /// Adds to `read.dropped` the derived groups as restored, and the losses: triangles inside a material,
 /// triangles without a tet and a group, and triangles that are already in a group. A triangle that is also
 /// listed without a group is not lost. Takes the time and memory of find_interfaces().

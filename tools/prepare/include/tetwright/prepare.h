@@ -310,6 +310,8 @@ struct PrepareReport {
   std::optional<MesherReport> mesher;
   std::optional<CoarserCells> coarser;
   std::optional<MeshStatistics> dense, result;
+  std::vector<ContactReport> contacts;  ///< of bodies that meet, by pair
+  std::vector<OverlapReport> overlaps;  ///< of bodies that cross, by pair
   std::vector<FeatureReport> features;  ///< one for each surface, or one for the tet mesh
   CreaseCurves creases;                 ///< creases of all inputs
   std::optional<CreaseComparison> crease_comparison;
