@@ -167,7 +167,8 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
      .severity = Severity::note,
      .title = "part of a sheet on the boundary of a body or on another sheet",
      .message = "a part of the sheet 'NAME' on the boundary of a body, with an area of A (left out)",
-     .cause = "The mesh has faces there already: those of the boundary, of an interface, or of another sheet.",
+     .cause =
+         "The mesh has faces there already: those of the boundary, of an interface, or of another sheet.",
      .remedy = "None needed. To name such faces, give the body's surface named groups."},
     {.code = partition_ends,
      .name = "partition-ends",

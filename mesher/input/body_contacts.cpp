@@ -112,9 +112,9 @@ void report_sheets(const std::vector<SheetFate>& fates, MesherInput& input) {
                            ", and not inside; to name faces of the boundary, give the body's surface named "
                            "groups");
     if (fate.kept == 0)
-      throw InputError(sheet.file, 0,
-                       name + " lies on another sheet, at " + place_text(fate.repeated.place) +
-                           "; leave one of them out");
+      throw InputError(
+          sheet.file, 0,
+          name + " lies on another sheet, at " + place_text(fate.repeated.place) + "; leave one of them out");
     const auto note = [&](DiagnosticCode code, const SheetLoss& loss, const char* where) {
       if (!(loss.area > 0)) return;
       input.findings.push_back(
@@ -134,11 +134,12 @@ void report_sheets(const std::vector<SheetFate>& fates, MesherInput& input) {
 [[noreturn]] void refuse_meeting(const SheetMeeting& meeting, const MesherInput& input) {
   const std::string first = "'" + input.sheets[meeting.first].group.name + "'",
                     second = "'" + input.sheets[meeting.second].group.name + "'";
-  throw InputError(input.sheets[meeting.second].file, 0,
-                   (meeting.first == meeting.second ? "the sheet " + first + " branches or crosses itself"
-                                                    : "the sheets " + first + " and " + second + " meet") +
-                       " at " + place_text(meeting.place) +
-                       ", and only sheets that are apart can be meshed; separate them there, or leave one out");
+  throw InputError(
+      input.sheets[meeting.second].file, 0,
+      (meeting.first == meeting.second ? "the sheet " + first + " branches or crosses itself"
+                                       : "the sheets " + first + " and " + second + " meet") +
+          " at " + place_text(meeting.place) +
+          ", and only sheets that are apart can be meshed; separate them there, or leave one out");
 }
 
 MaterialTag free_tag(const MesherInput& input) {

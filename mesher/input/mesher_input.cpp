@@ -12,8 +12,8 @@
 #include "mesher/input/body_builder.h"
 #include "mesher/input/body_contacts.h"
 #include "mesher/input/qualified_names.h"
-#include "mesher/input/sheet_surfaces.h"
 #include "mesher/input/self_crossings.h"
+#include "mesher/input/sheet_surfaces.h"
 #include "mesher/tuning/input_tuning.h"
 #include "tetwright/error.h"
 
@@ -140,6 +140,9 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
   SheetSoup inner;
   for (const SheetSurface& s : sheets.surfaces)
     if (!s.divides) inner.add(s, input.sheets, input.findings);
+  if (!inner.empty() && !input.layers.empty())
+    throw UsageError("sheets and layers cannot be combined: a sheet would end at the layer '" +
+                     input.layers[0].name + "'; leave out one of them, or give the layer as a surface");
   const double tolerance = contact_tolerance(contact, (input.high - input.low).norm());
   for (MesherInput::Body& body : input.bodies) resolve_self_crossings(body, tolerance, progress);
   join_bodies(input, inner, contact, progress);

@@ -5,23 +5,24 @@
 #include <map>
 
 #include "common/features/edge_uses.h"
+#include "common/geometry/self_intersection.h"
+#include "common/message_text.h"
+#include "mesher/tuning/input_tuning.h"
+#include "tetwright/error.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 
 namespace {
 
-/// The border of a surface: for each point on it the sum of the directions, in the planes of the triangles
-/// there, that lead away from it.
-struct Border {
-  struct Edge {
-    Index from, to;  ///< as the triangle traverses it
-  };
-  std::vector<Edge> edges;
-  std::map<Index, std::vector<Vec3>> outwards;
+/// An edge of one triangle only, as that triangle traverses it.
+struct BorderEdge {
+  Index from, to;
+  Vec3 out;  ///< unit, in the plane of the triangle
 };
 
-Border border_of(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
-  Border border;
+std::vector<BorderEdge> border_of(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles) {
+  std::vector<BorderEdge> border;
   const std::vector<EdgeUse> uses = edge_uses(triangles, {});
   for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
     while (j < uses.size() && uses[j].key == uses[i].key) ++j;
@@ -31,36 +32,75 @@ Border border_of(const std::vector<Vec3>& points, const std::vector<Triangle>& t
     const Triangle& t = triangles[uses[i].triangle];
     const Vec3 normal = (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]);
     const Vec3 out = (points[to] - points[from]).cross(normal).normalized();
-    if (!out.allFinite()) continue;
-    border.edges.push_back({from, to});
-    border.outwards[from].push_back(out);
-    border.outwards[to].push_back(out);
+    if (out.allFinite()) border.push_back({from, to, out});
   }
   return border;
 }
 
+/// The directions away from a border, smoothed over a width: small waves of the border would become folds.
+/// Sides of a corner keep their own.
+std::vector<Vec3> smooth_directions(const std::vector<Vec3>& points, const std::vector<BorderEdge>& border,
+                                    double width) {
+  std::vector<Vec3> smooth(border.size());
+  const auto middle = [&](const BorderEdge& e) { return Vec3((points[e.from] + points[e.to]) / 2); };
+  parallel_for(0, border.size(), InputGrains::border_edges, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Vec3 sum = Vec3::Zero();
+      for (const BorderEdge& e : border)
+        if (e.out.dot(border[i].out) > InputTuning::Partitions::same_side &&
+            (middle(e) - middle(border[i])).norm() <= width)
+          sum += (points[e.to] - points[e.from]).norm() * e.out;
+      smooth[i] = sum.normalized();
+    }
+  });
+  return smooth;
+}
+
 /// Continues a surface by a strip along its border. At corners the strip has the full width along both sides.
+/// \throws InputError if the strip meets itself or the surface
 void continue_border(double width, Partition& p) {
-  const Border border = border_of(p.points, p.triangles);
+  const std::vector<BorderEdge> border = border_of(p.points, p.triangles);
+  if (border.size() > InputTuning::Partitions::max_border)
+    throw InputError(p.file, 0,
+                     "the partition '" + p.name + "' has a border of " + std::to_string(border.size()) +
+                         " edges, and --extend continues at most " +
+                         std::to_string(InputTuning::Partitions::max_border) +
+                         "; leave out --extend and continue the surface to the boundary yourself");
+  const std::vector<Vec3> directions = smooth_directions(p.points, border, width);
+  std::map<Index, std::vector<Vec3>> outwards;
+  for (std::size_t i = 0; i < border.size(); ++i) {
+    outwards[border[i].from].push_back(directions[i]);
+    outwards[border[i].to].push_back(directions[i]);
+  }
   std::map<Index, Index> beyond;
-  for (const auto& [point, outwards] : border.outwards) {
+  for (const auto& [point, outs] : outwards) {
     Vec3 sum = Vec3::Zero();
-    for (const Vec3& out : outwards) sum += out;
+    for (const Vec3& out : outs) sum += out;
     const Vec3 middle = sum.normalized();
     if (!middle.allFinite()) continue;
-    // A spike would become arbitrarily long.
-    constexpr double min_cosine = 0.5;
     double cosine = 1;
-    for (const Vec3& out : outwards) cosine = std::min(cosine, out.dot(middle));
+    for (const Vec3& out : outs) cosine = std::min(cosine, out.dot(middle));
     beyond[point] = static_cast<Index>(p.points.size());
-    p.points.push_back(p.points[point] + width / std::max(cosine, min_cosine) * middle);
+    p.points.push_back(p.points[point] +
+                       width / std::max(cosine, InputTuning::Partitions::min_cosine) * middle);
   }
-  for (const auto& [from, to] : border.edges) {
+  for (const auto& [from, to, out] : border) {
     const auto a = beyond.find(from), b = beyond.find(to);
     if (a == beyond.end() || b == beyond.end()) continue;
     p.triangles.push_back({to, from, a->second});
     p.triangles.push_back({to, a->second, b->second});
   }
+  const auto folds = self_intersections(p.points, p.triangles);
+  const auto of_strip = std::find_if(folds.begin(), folds.end(), [&](const auto& pair) {
+    return pair.second >= p.triangles.size() - 2 * border.size();
+  });
+  if (of_strip == folds.end()) return;
+  const Triangle& t = p.triangles[of_strip->second];
+  throw InputError(p.file, 0,
+                   "continued by --extend " + short_number(width) + ", the partition '" + p.name +
+                       "' would cross itself at " +
+                       place_text((p.points[t[0]] + p.points[t[1]] + p.points[t[2]]) / 3) +
+                       "; use a smaller --extend, or continue the surface to the boundary yourself");
 }
 
 }  // namespace

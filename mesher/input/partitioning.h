@@ -22,7 +22,8 @@ struct Partition {
 /// Cleans a surface that divides bodies, and continues it beyond its border in the planes of the triangles
 /// there.
 /// \param extend length of the continuation, input units; 0: none
-/// \throws InputError as clean_surface() does
+/// \throws InputError as clean_surface() does; if the continued surface would cross itself, or has too long a
+///   border
 Partition make_partition(const SheetSurface& surface, double extend, std::vector<Diagnostic>& findings);
 
 /// A body's surface together with the surfaces that divide it.

@@ -8,6 +8,7 @@
 #include <oneapi/tbb/global_control.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <string>
 
@@ -47,9 +48,10 @@ SheetSurface partition(const std::string& name, TriangleMesh surface) {
   return {name, std::move(surface), name + ".off", true};
 }
 
-MesherInput in_box(std::vector<SheetSurface> sheets, double extend = 0, TriangleMesh box = make_box(low, high)) {
-  return make_mesher_input({{"box", 1, std::move(box), "box.off"}}, {}, NestedRule::automatic, {}, {}, nullptr,
-                           {std::move(sheets), extend});
+MesherInput in_box(std::vector<SheetSurface> sheets, double extend = 0,
+                   TriangleMesh box = make_box(low, high)) {
+  return make_mesher_input({{"box", 1, std::move(box), "box.off"}}, {}, NestedRule::automatic, {}, {},
+                           nullptr, {std::move(sheets), extend});
 }
 
 DenseMesh mesh_of(const MesherInput& input, int resolution = 20) {
@@ -118,8 +120,9 @@ TEST(InnerSheets, MayReachFromWallToWall) {
 }
 
 TEST(InnerSheets, ThatAreApartKeepTheirNames) {
-  const DenseMesh dense = mesh_of(in_box({sheet("low", parallelogram({0.4, 0.4, 0.3}, {1, 0, 0}, {0, 0.8, 0})),
-                                          sheet("high", parallelogram({0.4, 0.4, 0.7}, {1, 0, 0}, {0, 0.8, 0}))}));
+  const DenseMesh dense =
+      mesh_of(in_box({sheet("low", parallelogram({0.4, 0.4, 0.3}, {1, 0, 0}, {0, 0.8, 0})),
+                      sheet("high", parallelogram({0.4, 0.4, 0.7}, {1, 0, 0}, {0, 0.8, 0}))}));
   expect_sheets(dense.mesh, {{"low", 0.8}, {"high", 0.8}}, 3.6);
 }
 
@@ -136,7 +139,8 @@ TEST(InnerSheets, DoNotDependOnTheNumberOfThreads) {
 
 TEST(InnerSheets, AreCutOffOutsideBodies) {
   const MesherInput input = in_box({sheet("fin", parallelogram({1.5, 0.5, 0.2}, {1, 0, 0}, {0, 0, 0.5}))});
-  EXPECT_TRUE(holds(said_of(input, DiagnosticCode::sheet_cut_off), "fin.off: a part of the sheet 'fin' outside"));
+  EXPECT_TRUE(
+      holds(said_of(input, DiagnosticCode::sheet_cut_off), "fin.off: a part of the sheet 'fin' outside"));
   expect_sheets(mesh_of(input).mesh, {{"fin", 0.25}}, 2);
 }
 
@@ -184,6 +188,12 @@ TEST(InnerSheets, GivenTwiceAreRefused) {
   EXPECT_TRUE(holds(text, "again.off: the sheet 'again' lies on another sheet")) << text;
 }
 
+TEST(InnerSheets, CannotBeCombinedWithLayers) {
+  EXPECT_THROW(make_mesher_input({{"box", 1, make_box(low, high), "box.off"}}, {{"skin", 2, 0.1}},
+                                 NestedRule::automatic, {}, {}, nullptr, {{sheet("baffle", baffle())}, 0}),
+               UsageError);
+}
+
 TEST(InnerSheets, InAnOpenBodyAreRefused) {
   TriangleMesh box = make_box(low, high);
   box.triangles.pop_back();
@@ -191,7 +201,8 @@ TEST(InnerSheets, InAnOpenBodyAreRefused) {
 }
 
 TEST(Partitions, DivideABodyIntoMaterials) {
-  const MesherInput input = in_box({partition("fault", parallelogram({-0.5, -0.5, 0.6}, {3, 0, 0}, {0, 3, 0}))});
+  const MesherInput input =
+      in_box({partition("fault", parallelogram({-0.5, -0.5, 0.6}, {3, 0, 0}, {0, 3, 0}))});
   ASSERT_EQ(input.bodies.size(), 2U);
   EXPECT_EQ(input.bodies[0].name, "box_1");  // from the top
   EXPECT_EQ(input.bodies[1].name, "box_2");
@@ -205,6 +216,23 @@ TEST(Partitions, ThatEndInsideAreRefusedUnlessExtended) {
   const TriangleMesh fault = parallelogram({0.1, 0.1, 0.6}, {1.8, 0, 0}, {0, 1.3, 0});
   EXPECT_TRUE(holds(refusal({partition("fault", fault)}), "it ends inside 'box' at "));
   EXPECT_EQ(in_box({partition("fault", fault)}, 0.2).bodies.size(), 2U);
+}
+
+TEST(Partitions, WithWavyBordersAreContinuedWithoutFolds) {
+  TriangleMesh wavy = parallelogram({0.5, 0.4, 0.6}, {1, 0, 0}, {0, 0.7, 0}, 20);
+  for (Vec3& p : wavy.points)
+    p += 0.004 * Vec3(std::sin(40 * p.y()), std::sin(40 * p.x()), std::sin(70 * p.x() + 60 * p.y()));
+  EXPECT_EQ(in_box({partition("fault", wavy)}, 0.8).bodies.size(), 2U);
+}
+
+TEST(Partitions, ThatWouldFoldAreRefused) {
+  // The sides of the notch, continued, cross each other.
+  TriangleMesh notched = parallelogram({0.5, 0.4, 0.6}, {1, 0, 0}, {0, 0.7, 0}, 10);
+  std::erase_if(notched.triangles, [&](const Triangle& t) {
+    const Vec3 p = (notched.points[t[0]] + notched.points[t[1]] + notched.points[t[2]]) / 3;
+    return p.x() > 0.9 && p.x() < 1.1 && p.y() > 0.7;
+  });
+  EXPECT_TRUE(holds(refusal({partition("fault", notched)}, 0.8), "would cross itself at "));
 }
 
 TEST(Partitions, OutsideBodiesAreRefused) {

@@ -97,7 +97,7 @@ struct ExpectedSolid {
 
 /// A sheet inside bodies, without its parts that are in none.
 struct ExpectedSheet {
-  SheetStatistics shape;      ///< without the number of triangles
+  SheetStatistics shape;  ///< without the number of triangles
   std::string file;
   Vec3 place = Vec3::Zero();  ///< the centre of its largest triangle, input units
 };

@@ -268,7 +268,10 @@ enum class SurfaceFlaw : std::uint8_t {
 /// \throws InputError as repair_surface() does; for surfaces that cannot be joined, bodies that cross with
 ///   OverlapRule::error; for coordinates too large or a size too small for areas and
 ///   volumes in double precision
-/// \throws UsageError for no surface, two materials of one name or tag, a layer whose thickness is not above
+/// Sheets (SheetOptions) become faces of the complex, and what of them is in no body is reported.
+///
+/// \throws UsageError for sheets together with layers; for no surface, two materials of one name or tag, a
+/// layer whose thickness is not above
 ///   0, more than 60,000 materials, or a seed that is in no cell or whose cell another one names
 MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers = {},
                               NestedRule nested = NestedRule::automatic, const ContactOptions& contact = {},
