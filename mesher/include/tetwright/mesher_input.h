@@ -261,18 +261,17 @@ enum class SurfaceFlaw : std::uint8_t {
 ///
 /// Closed bodies that meet are then joined (ContactOptions): their surfaces are cut along the curves in which
 /// they meet, and within the tolerance moved onto each other. With OverlapRule::material their common volumes
-/// are appended as bodies with the smallest free tags from 1 up.
+/// are appended as bodies with the smallest free tags from 1 up. Sheets become faces of the complex; their
+/// parts that are in no body, or on the boundary of one, are reported.
 ///
 /// \param progress may be null
 /// \pre non-empty names differ, and so do tags
 /// \throws InputError as repair_surface() does; for surfaces that cannot be joined, bodies that cross with
-///   OverlapRule::error; for coordinates too large or a size too small for areas and
-///   volumes in double precision
-/// Sheets (SheetOptions) become faces of the complex, and what of them is in no body is reported.
-///
-/// \throws UsageError for sheets together with layers; for no surface, two materials of one name or tag, a
-/// layer whose thickness is not above
-///   0, more than 60,000 materials, or a seed that is in no cell or whose cell another one names
+///   OverlapRule::error; for sheets and partitions that are closed, meet others or are in no body; for
+///   coordinates too large or a size too small for areas and volumes in double precision
+/// \throws UsageError for no surface, sheets together with layers, two materials of one name or tag, a layer
+///   whose thickness is not above 0, more than 60,000 materials, or a seed that is in no cell or whose cell
+///   another one names
 MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers = {},
                               NestedRule nested = NestedRule::automatic, const ContactOptions& contact = {},
                               const RegionOptions& regions = {}, Progress* progress = nullptr,
