@@ -293,7 +293,7 @@ class ComplexBuilder {
         add_triangle(u.body, welded_[t].ids, u.turned, u.source);
       }
       add_sheet(t, behind, front);
-      // What an earlier body keeps bounds the later one, too.
+      // The part that an earlier body keeps bounds the later one, too.
       for (std::size_t b = 0; b < bodies_ && rule_ == OverlapRule::first; ++b)
         if (windings_[back_cell][b] > 0 && windings_[front_cell][b] > 0 &&
             keeps(b, back_cell) != keeps(b, front_cell))

@@ -141,11 +141,14 @@ void BodyBuilder::add(std::vector<MaterialSurface> surfaces, NestedRule nested, 
   for (std::uint32_t k = 0; k < partitions.size(); ++k) {
     if (dividing_.contains(k)) continue;
     const auto end = ends_.find(k);
-    throw InputError(partitions[k].file, 0,
-                     "the partition '" + partitions[k].name + "' divides no body: " +
-                         (end == ends_.end() ? "it crosses none; check its units and position"
-                                             : end->second + "; use a larger --extend, or --sheet to keep it "
-                                                             "as a sheet inside the body"));
+    throw InputError(
+        partitions[k].file, 0,
+        "the partition '" + partitions[k].name + "' divides no body: " +
+            (end == ends_.end()
+                 ? "it reaches the boundary of none; check its units and position, or continue it "
+                   "with a larger --extend"
+                 : end->second + "; use a larger --extend, or --sheet to keep it "
+                                 "as a sheet inside the body"));
   }
 }
 

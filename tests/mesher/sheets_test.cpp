@@ -86,17 +86,19 @@ double volume_of(const TetMesh& mesh, MaterialTag tag) {
   return volume(mesh.points, tets);
 }
 
-void expect_sheets(const TetMesh& mesh, const std::map<std::string, double>& areas, double border) {
+/// \param slack relative difference of lengths and areas
+void expect_sheets(const TetMesh& mesh, const std::map<std::string, double>& areas, double border,
+                   double slack = 1e-5) {
   EXPECT_EQ(broken_promise(mesh.points, mesh.tets), "");
   EXPECT_TRUE(misplaced_sheet_faces(mesh).empty());
   const std::vector<SheetStatistics> found = sheet_statistics(mesh);
   ASSERT_EQ(found.size(), areas.size());
   for (const SheetStatistics& s : found) {
     ASSERT_TRUE(areas.contains(s.name)) << s.name;
-    EXPECT_NEAR(s.area, areas.at(s.name), 1e-5) << s.name;
+    EXPECT_NEAR(s.area, areas.at(s.name), slack * s.area) << s.name;
     EXPECT_EQ(s.pieces, 1U) << s.name;
     EXPECT_EQ(s.euler, 1) << s.name;
-    EXPECT_NEAR(s.border_length, border, 1e-5) << s.name;
+    EXPECT_NEAR(s.border_length, border, slack * border) << s.name;
   }
 }
 
@@ -104,7 +106,7 @@ TEST(InnerSheets, AreFacesWithTheirExactBorder) {
   for (const int resolution : {12, 20, 33}) {
     const DenseMesh dense = mesh_of(in_box({sheet("baffle", baffle())}), resolution);
     expect_sheets(dense.mesh, {{"baffle", baffle_area}}, 2 * (std::hypot(0.9, 0.4) + 0.45));
-    EXPECT_NEAR(volume_of(dense.mesh, 1), 3, 1e-6);
+    EXPECT_NEAR(volume_of(dense.mesh, 1), 3, 1e-4);
     ASSERT_EQ(dense.report.sheets.size(), 1U);
     EXPECT_NEAR(dense.report.sheets[0].shape.area, baffle_area, 1e-5);
     EXPECT_NE(dense.reference, nullptr);
@@ -141,7 +143,8 @@ TEST(InnerSheets, AreCutOffOutsideBodies) {
   const MesherInput input = in_box({sheet("fin", parallelogram({1.5, 0.5, 0.2}, {1, 0, 0}, {0, 0, 0.5}))});
   EXPECT_TRUE(
       holds(said_of(input, DiagnosticCode::sheet_cut_off), "fin.off: a part of the sheet 'fin' outside"));
-  expect_sheets(mesh_of(input).mesh, {{"fin", 0.25}}, 2);
+  // Its end on the wall is as accurate as other curves in which surfaces meet.
+  expect_sheets(mesh_of(input).mesh, {{"fin", 0.25}}, 2, 0.01);
 }
 
 TEST(InnerSheets, OutsideBodiesAreRefused) {
@@ -214,8 +217,14 @@ TEST(Partitions, DivideABodyIntoMaterials) {
 
 TEST(Partitions, ThatEndInsideAreRefusedUnlessExtended) {
   const TriangleMesh fault = parallelogram({0.1, 0.1, 0.6}, {1.8, 0, 0}, {0, 1.3, 0});
-  EXPECT_TRUE(holds(refusal({partition("fault", fault)}), "it ends inside 'box' at "));
+  EXPECT_TRUE(holds(refusal({partition("fault", fault)}), "reaches the boundary of none"));
   EXPECT_EQ(in_box({partition("fault", fault)}, 0.2).bodies.size(), 2U);
+}
+
+TEST(Partitions, ThatReachTheBoundaryOnOneSideAreRefused) {
+  const std::string text =
+      refusal({partition("fault", parallelogram({-0.1, 0.1, 0.6}, {1.5, 0, 0}, {0, 1.3, 0}))});
+  EXPECT_TRUE(holds(text, "it ends inside 'box' at ")) << text;
 }
 
 TEST(Partitions, WithWavyBordersAreContinuedWithoutFolds) {
@@ -237,7 +246,7 @@ TEST(Partitions, ThatWouldFoldAreRefused) {
 
 TEST(Partitions, OutsideBodiesAreRefused) {
   EXPECT_TRUE(holds(refusal({partition("fault", parallelogram({0, 0, 3}, {2, 0, 0}, {0, 1.5, 0}))}),
-                    "the partition 'fault' divides no body: it crosses none"));
+                    "the partition 'fault' divides no body: it reaches the boundary of none"));
 }
 
 }  // namespace
