@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <optional>
 
+#include "common/geometry/box_tree.h"
+#include "common/geometry/projection_tree.h"
 #include "common/message_text.h"
 #include "tetwright/sheets.h"
 
@@ -335,7 +337,43 @@ void find_small_parts(PrepareReport& report) {
   for (const ThinPartReport& t : report.mesher->thin_parts) find_thin_part(t, report);
 }
 
+/// Max distance of points on the boundary beside sheets, as a share of the diagonal: that of creases
+/// (crease_comparison.cpp).
+constexpr double max_boundary_share = 0.005;
+
 }  // namespace
+
+void find_moved_boundary(const TetMesh& mesh, const TriangleMesh& surface, PrepareRun& run) {
+  if (!run.report.mesher || run.report.mesher->sheets.empty()) return;
+  std::vector<ProjectionTree::Item> items;
+  Box3 box;
+  for (const Triangle& t : surface.triangles) {
+    items.push_back({t, {}});
+    for (const Index p : t) box.add(surface.points[p]);
+  }
+  const ProjectionTree tree(surface.points, std::move(items));
+  const double diagonal = (box.high - box.low).norm();
+  double worst = 0;
+  Vec3 place = Vec3::Zero();
+  for (const InterfaceTriangle& t : mesh.interfaces) {
+    if (t.is_sheet() || (t.material == outside_tag && !t.other)) continue;
+    for (const Index p : t.ids)
+      if (const auto foot = tree.nearest(mesh.points[p], {}, diagonal))
+        if (const double distance = (*foot - mesh.points[p]).norm(); distance > worst)
+          worst = distance, place = mesh.points[p];
+  }
+  if (worst <= max_boundary_share * diagonal) return;
+  run.report.diagnostics.push_back(
+      {.code = DiagnosticCode::sheets_changed,
+       .file = run.report.inputs.front(),
+       .what = "not the surface of the input: beside sheets it is off by up to " + short_number(worst) +
+               " (" + short_number(100 * worst / diagonal) + " % of the diagonal) at " + place_text(place),
+       .remedy = "change --resolution or --target-tets a little, or accept it with --accept-changes",
+       .asked = 0,
+       .reached = worst,
+       .limited_by = "the shapes of tets where sheets meet the boundary",
+       .places = {place}});
+}
 
 void find_input_changes(const TetMesh& mesh, PrepareRun& run) {
   find_lost_labels(run);
