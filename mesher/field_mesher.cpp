@@ -17,6 +17,7 @@
 #include "mesher/lattice/octree.h"
 #include "mesher/lattice/sized_cells.h"
 #include "mesher/mesh_estimate.h"
+#include "mesher/sheet_faces.h"
 #include "mesher/tuning/cell_tuning.h"
 #include "mesher/tuning/domain_tuning.h"
 #include "mesher/tuning/estimate_tuning.h"
@@ -40,9 +41,15 @@ void number_box_patches(std::vector<InterfaceTriangle>& interfaces, const std::v
   });
 }
 
-TetMesh to_input_units(CutMesh cut, const MaterialField& field) {
+/// \param sheeted the field that the mesh was cut from if it has sheets, or null
+TetMesh to_input_units(CutMesh cut, const MaterialField& field, const SheetedField* sheeted) {
   TetMesh mesh;
   const GridFrame& frame = field.frame();
+  std::vector<InterfaceTriangle> sheets;
+  if (sheeted) {
+    sheets = sheet_faces(cut, *sheeted, cut.on_interface);
+    cut.regions = regions_without_sheets(cut.regions, *sheeted);
+  }
   mesh.points = std::move(cut.points);
   std::vector<std::uint8_t> candidates = std::move(cut.on_interface);
   std::vector<std::uint8_t> sides(mesh.points.size());
@@ -71,6 +78,7 @@ TetMesh to_input_units(CutMesh cut, const MaterialField& field) {
   });
   mesh.interfaces = find_interfaces(mesh, &candidates);
   if (field.volume()) number_box_patches(mesh.interfaces, sides);
+  mesh.interfaces.insert(mesh.interfaces.end(), sheets.begin(), sheets.end());
   return mesh;
 }
 
@@ -219,16 +227,20 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   }
   octree = {};
   stages.throw_if_stopped();
+  std::shared_ptr<const SheetedField> sheeted;
+  if (field->sheets()) sheeted = SheetedField::of_points(field, points.positions, regions);
+  const MaterialField& divided = sheeted ? *sheeted : *field;
   LabelledLattice lattice =
-      label_lattice(std::move(points), std::move(regions), std::move(tets), field->regions().size(),
+      label_lattice(std::move(points), std::move(regions), std::move(tets), divided.regions().size(),
                     options.keep_outside, &report.isolated_vertices);
   stages.throw_if_stopped();
-  read_star_values(lattice, *field);
+  if (sheeted) mark_rims(lattice, *sheeted);
+  read_star_values(lattice, divided);
   report.lattice_tets = lattice.tets.size();
   report.seconds_lattice = stages.seconds();
 
   stages.begin("moving points");
-  snap_vertices(lattice, *field, progress);
+  snap_vertices(lattice, divided, progress);
   report.seconds_move = stages.seconds();
 
   stages.begin("cutting");
@@ -236,19 +248,24 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   CutMesh cut = cut_lattice(std::move(lattice));
   stages.throw_if_stopped();
   // Moves may have removed a region with few lattice points, or it was an isolated vertex.
-  validate_regions(regions_there(*field, cut.regions));
+  validate_regions(
+      regions_there(*field, sheeted ? regions_without_sheets(cut.regions, *sheeted) : cut.regions));
   if (const WallChanges* walls = field->wall_changes()) {
     std::shared_ptr<const MaterialField> as_is = walls->with_true_walls();
+    // Points on sheets next to thin walls stay.
+    std::vector<std::uint8_t> on_interface = cut.on_interface;
+    if (sheeted) cut.on_interface = on_interfaces_without_sheets(cut, *sheeted);
     report.thickened = thickened_report(recover_thin_walls(cut, *walls, *as_is), field->frame());
+    cut.on_interface = std::move(on_interface);
     field = std::move(as_is);
   }
-  result.mesh = to_input_units(std::move(cut), *field);
+  result.mesh = to_input_units(std::move(cut), *field, sheeted.get());
   report.seconds_cut = stages.seconds();
   stages.throw_if_stopped();
 
   result.reference = field;
-  if (std::any_of(result.mesh.interfaces.begin(), result.mesh.interfaces.end(),
-                  [](const InterfaceTriangle& t) { return t.patch != 0; }))
+  if (field->volume() && std::any_of(result.mesh.interfaces.begin(), result.mesh.interfaces.end(),
+                                     [](const InterfaceTriangle& t) { return t.patch != 0; }))
     result.reference = std::make_shared<CutOffSurface>(result.mesh, field);
   result.field = std::move(field);
   result.report = std::move(report);

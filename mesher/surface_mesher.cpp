@@ -22,6 +22,7 @@
 #include "mesher/input/expected_solids.h"
 #include "mesher/mesh_estimate.h"
 #include "mesher/tuning/cell_tuning.h"
+#include "mesher/tuning/complex_tuning.h"
 #include "tetwright/error.h"
 
 namespace tetwright {
@@ -189,6 +190,52 @@ std::vector<SurfacePatches> patches_of(const MesherInput& input, const MesherOpt
   return patches;
 }
 
+/// The patches of the sheets inside bodies.
+SheetPatches patches_of_sheets(const MesherInput& input, const MesherOptions& options, double cell) {
+  SheetPatches result;
+  if (!input.complex || input.complex->sheets.empty()) return result;
+  const LabelledComplex& complex = *input.complex;
+  std::vector<Triangle> triangles;
+  std::vector<std::uint32_t> groups;
+  std::map<std::array<std::uint32_t, 3>, std::uint32_t> numbers;
+  for (const LabelledComplex::SheetFace& f : complex.sheets) {
+    triangles.push_back(f.ids);
+    groups.push_back(
+        numbers.try_emplace({f.component, f.region, f.sheet}, static_cast<std::uint32_t>(numbers.size()))
+            .first->second);
+  }
+  result.found = find_patches(complex.points, triangles,
+                              {options.feature_angle, CellTuning::Patches::min_area * cell * cell}, groups,
+                              input.sheets[0].file);
+  result.continued = ComplexTuning::Sheets::continued * cell;
+  return result;
+}
+
+/// The sheets inside bodies.
+std::vector<ExpectedSheet> expected_sheets(const MesherInput& input) {
+  if (!input.complex || input.complex->sheets.empty()) return {};
+  const LabelledComplex& complex = *input.complex;
+  std::vector<ExpectedSheet> expected;
+  for (std::uint32_t k = 0; k < input.sheets.size(); ++k) {
+    TetMesh mesh{.points = complex.points};
+    ExpectedSheet sheet{.file = input.sheets[k].file};
+    mesh.patch_groups[{{1, 1}, 0}] = input.sheets[k].group;
+    double largest = -1;
+    for (const LabelledComplex::SheetFace& f : complex.sheets) {
+      if (f.sheet != k) continue;
+      mesh.interfaces.push_back({f.ids, 1, 1});
+      const auto& [a, b, c] = f.ids;
+      const Vec3 &p = mesh.points[a], &q = mesh.points[b], &r = mesh.points[c];
+      const double size = (q - p).cross(r - p).norm();
+      if (size > largest) largest = size, sheet.place = (p + q + r) / 3;
+    }
+    sheet.shape = sheet_statistics(mesh).front();
+    sheet.shape.triangles = 0;
+    expected.push_back(std::move(sheet));
+  }
+  return expected;
+}
+
 /// Drops the creases of a body except the borders of groups.
 void give_up_creases(const MesherInput::Body& body, SurfacePatches& found) {
   if (!found.any()) return;
@@ -255,11 +302,11 @@ void report_features(const MesherInput& input, const std::vector<SurfacePatches>
 
 /// Reports the creases of a complex: for each sheet, those between its patches.
 void report_complex_creases(const MesherInput& input, const std::vector<SurfacePatches>& patches,
-                            MesherReport& report) {
-  const ComplexPatches found = complex_patches(input, patches);
+                            const SheetPatches& of_sheets, MesherReport& report) {
+  const ComplexPatches found = complex_patches(input, patches, of_sheets);
   std::vector<std::vector<Triangle>> triangles(found.sheets.size());
   std::vector<std::vector<std::uint16_t>> of_triangles(found.sheets.size());
-  for (std::size_t t = 0; t < found.triangles.size(); ++t) {
+  for (std::size_t t = 0; t < input.complex->faces.size(); ++t) {
     const std::size_t sheet = found.sheet_of_patch[found.patches[t]];
     triangles[sheet].push_back(found.triangles[t]);
     of_triangles[sheet].push_back(found.patches[t]);
@@ -366,6 +413,7 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
       std::max(CellTuning::WallBudget::min_cheap_tets, static_cast<double>(report.estimate.tets));
   budget.max_tets = std::max(CellTuning::WallBudget::max_added_tets, budget.base_tets);
   std::vector<SurfacePatches> patches = patches_of(input, options, report.cell_size);
+  const SheetPatches of_sheets = patches_of_sheets(input, options, report.cell_size);
   const auto has_patches = [](const SurfacePatches& p) { return p.any(); };
   const int max_depth = std::min(budget.max_depth, budget.max_possible);
   const NarrowPatches asked = cells_around(options.refinement_regions, voxels, max_depth, budget.base_tets);
@@ -408,6 +456,7 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
           {input.bodies[body].name, wall.gap, wall.on_purpose, wall.thickness * report.cell_size,
            wall.area * report.cell_size * report.cell_size, voxels.to_input(wall.place)});
   sheets.finer = combine(std::move(sheets.finer), std::move(bodies.finer));
+  report.sheets = expected_sheets(input);
   expect_materials(input, *field, interface_voxels, sheets.finer.refinement > 0, report);
 
   DenseMesh dense = mesh_field(
@@ -417,15 +466,16 @@ DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, 
   if (!input.complex) give_up_where_surfaces_meet(input, dense.mesh, patches);
   give_up_where_gaps_are_closed(input, dense.report, patches);
   report_features(input, patches, dense.report);
-  if (input.complex) report_complex_creases(input, patches, dense.report);
+  if (input.complex) report_complex_creases(input, patches, of_sheets, dense.report);
   if (input.complex || std::any_of(patches.begin(), patches.end(), has_patches) ||
       std::any_of(input.bodies.begin(), input.bodies.end(), has_groups)) {
     stages.begin("creases");
     if (!input.complex) keep_visible(dense.report.creases, input, dense);
     allow_for_chamfers(dense.report);
     const auto features = std::make_shared<const FeatureSurface>(
-        input, patches, CellTuning::Patches::corner_reach * dense.report.cell_size, dense.field);
-    if (input.complex) collapse_strips(dense.mesh, *input.complex, *features, dense.report.cell_size);
+        input, patches, CellTuning::Patches::corner_reach * dense.report.cell_size, dense.field, of_sheets);
+    if (input.complex && input.complex->sheets.empty())
+      collapse_strips(dense.mesh, *input.complex, *features, dense.report.cell_size);
     fit_creases(dense.mesh, *features, *field, dense.report.cell_size);
     measure_walls(dense, *field);
     for (const InterfaceTriangle& t : dense.mesh.interfaces)

@@ -74,6 +74,17 @@ constexpr std::array request_table = std::to_array<DiagnosticKind>({
               "tore, a gap closed, or a round body of few cells lost volume. The line says where.",
      .remedy = "If it names the size of the cells: a higher `--resolution`. If it names the number of tets: "
                "a higher `--target-tets`. `--min-gap` and `--min-thickness` remove such details on purpose."},
+    {.code = sheets_changed,
+     .name = "sheets-changed",
+     .severity = Severity::shortfall,
+     .yields = Yields::to_acceptance,
+     .title = "sheets differ from the input",
+     .message = "not the sheets of the input: 'NAME' has ...",
+     .cause = "The area of a sheet differs by more than 1 % from that inside the bodies, or it tore, or its "
+              "parts grew together: cells are too large for the sheet or for what is next to it. Or the "
+              "boundary beside a sheet is more than 0.5 % of the diagonal off.",
+     .remedy =
+         "A higher `--resolution`, or a higher `--target-tets` if the mesh has few tets for the sheet."},
     {.code = thin_walls_changed,
      .name = "thin-walls-changed",
      .severity = Severity::shortfall,

@@ -35,8 +35,13 @@ struct Use {
 class ComplexBuilder {
  public:
   ComplexBuilder(const ImprintedSurfaces& imprinted, const SurfaceSoup& soup, std::size_t bodies,
-                 double tolerance, OverlapRule rule)
-      : imprinted_(imprinted), soup_(soup), bodies_(bodies), tolerance_(tolerance), rule_(rule) {}
+                 double tolerance, OverlapRule rule, const SoupSheets& sheets)
+      : imprinted_(imprinted),
+        soup_(soup),
+        bodies_(bodies),
+        tolerance_(tolerance),
+        rule_(rule),
+        sheets_(sheets) {}
 
   ComplexResult build() {
     weld();
@@ -54,6 +59,7 @@ class ComplexBuilder {
   std::span<const Use> uses(Index t) const {
     return std::span(uses_).subspan(welded_[t].first, welded_[t].count);
   }
+  bool is_sheet(const Use& u) const { return u.body >= bodies_; }
   Vec3 area_vector(const Triangle& t) const { return (at(t[1]) - at(t[0])).cross(at(t[2]) - at(t[0])) / 2; }
 
   /// Makes triangles with the same points one. A body's triangles that run both ways cancel.
@@ -82,7 +88,7 @@ class ComplexBuilder {
         std::vector<Use>& own = of_body[body];
         const auto opposite =
             std::find_if(own.begin(), own.end(), [&](const Use& u) { return u.turned != entries[j].turned; });
-        if (opposite != own.end())
+        if (opposite != own.end() && body < bodies_)
           own.erase(opposite);
         else
           own.push_back({body, source, entries[j].turned});
@@ -122,7 +128,8 @@ class ComplexBuilder {
         const Vec3 p = (at(ids[0]) + at(ids[1]) + at(ids[2])) / 3;
         std::vector<int>& winding = windings_[cell];
         const auto cross = [&](Index t, int crossing) {
-          for (const Use& u : uses(t)) winding[u.body] += u.turned ? -crossing : crossing;
+          for (const Use& u : uses(t))
+            if (!is_sheet(u)) winding[u.body] += u.turned ? -crossing : crossing;
         };
         tree.for_each_in(
             [&](const Box3& box) {
@@ -145,7 +152,8 @@ class ComplexBuilder {
     });
     for (Index t = 0; t < welded_.size() && !result_.inconsistent; ++t) {
       std::vector<int> step(bodies_, 0);
-      for (const Use& u : uses(t)) step[u.body] += u.turned ? -1 : 1;
+      for (const Use& u : uses(t))
+        if (!is_sheet(u)) step[u.body] += u.turned ? -1 : 1;
       const auto [behind, front] = cells_.sides[t];
       for (std::size_t b = 0; b < bodies_; ++b)
         if (windings_[behind][b] - windings_[front][b] != step[b])
@@ -279,11 +287,13 @@ class ComplexBuilder {
       const auto [back_cell, front_cell] = cells_.sides[t];
       const RegionIndex behind = labels_[back_cell], front = labels_[front_cell];
       for (const Use& u : uses(t)) {
+        if (is_sheet(u)) continue;
         if (rule_ == OverlapRule::first && keeps(u.body, back_cell) == keeps(u.body, front_cell)) continue;
         out.sources_.push_back({u.body, static_cast<Index>(result_.body_triangles[u.body].size()), u.turned});
         add_triangle(u.body, welded_[t].ids, u.turned, u.source);
       }
-      // What an earlier body keeps bounds the later one, too.
+      add_sheet(t, behind, front);
+      // The part that an earlier body keeps bounds the later one, too.
       for (std::size_t b = 0; b < bodies_ && rule_ == OverlapRule::first; ++b)
         if (windings_[back_cell][b] > 0 && windings_[front_cell][b] > 0 &&
             keeps(b, back_cell) != keeps(b, front_cell))
@@ -304,14 +314,74 @@ class ComplexBuilder {
     find_contacts();
     std::vector<Triangle> triangles;
     for (const LabelledComplex::Face& f : out.faces) triangles.push_back(f.ids);
+    for (const LabelledComplex::SheetFace& f : out.sheets) triangles.push_back(f.ids);
     const std::vector<EdgeUse> edges = edge_uses(triangles, {});
     const auto pair_of = [&](Index f) { return std::minmax(out.faces[f].behind, out.faces[f].front); };
+    DisjointSets components(out.sheets.size());
     for (std::size_t i = 0, j = 0; i < edges.size(); i = j) {
+      while (j < edges.size() && edges[j].key == edges[i].key) ++j;
+      // Faces come before sheets.
+      std::size_t faces = 0;
       bool plain = true;
-      for (; j < edges.size() && edges[j].key == edges[i].key; ++j)
-        plain &= pair_of(edges[j].triangle) == pair_of(edges[i].triangle);
-      if (j - i != 2 || !plain) out.junctions_.push_back(ends_of(edges[i].key));
+      for (; i + faces < j && edges[i + faces].triangle < out.faces.size(); ++faces)
+        plain &= pair_of(edges[i + faces].triangle) == pair_of(edges[i].triangle);
+      const std::size_t sheets = j - i - faces;
+      if (faces > 0 && (faces != 2 || sheets > 0 || !plain)) out.junctions_.push_back(ends_of(edges[i].key));
+      const auto sheet_face = [&](std::size_t k) {
+        return static_cast<Index>(edges[k].triangle - out.faces.size());
+      };
+      if (sheets > 0) find_meeting(edges, j - sheets, j);
+      if (sheets == 2 && part_of_[sheet_face(j - 2)] == part_of_[sheet_face(j - 1)])
+        components.unite(sheet_face(j - 2), sheet_face(j - 1));
     }
+    std::vector<std::uint32_t> number(out.sheets.size());
+    for (Index f = 0; f < out.sheets.size(); ++f) {
+      const Index root = components.root(f);  // the smallest
+      if (root == f) number[f] = out.sheet_components++;
+      out.sheets[f].component = number[root];
+    }
+  }
+
+  /// Notes that an edge is in more sheets than one.
+  void find_meeting(const std::vector<EdgeUse>& edges, std::size_t begin, std::size_t end) {
+    const LabelledComplex& out = result_.complex;
+    const auto face = [&](std::size_t k) { return edges[k].triangle - out.faces.size(); };
+    if (result_.sheets_meet || end - begin < 2) return;
+    if (end - begin == 2 && part_of_[face(begin)] == part_of_[face(begin + 1)]) return;
+    std::uint32_t low = out.sheets[face(begin)].sheet, high = low;
+    for (std::size_t k = begin; k < end; ++k) {
+      low = std::min(low, out.sheets[face(k)].sheet);
+      high = std::max(high, out.sheets[face(k)].sheet);
+    }
+    const auto [p, q] = ends_of(edges[begin].key);
+    result_.sheets_meet = {low, high, (at(p) + at(q)) / 2};
+  }
+
+  /// Adds a triangle of a sheet unless it is outside or on a face.
+  void add_sheet(Index t, RegionIndex behind, RegionIndex front) {
+    const auto first =
+        std::find_if(uses(t).begin(), uses(t).end(), [&](const Use& u) { return is_sheet(u); });
+    if (first == uses(t).end()) return;
+    const Triangle& ids = welded_[t].ids;
+    const double area = area_vector(ids).norm();
+    const Vec3 centre = (at(ids[0]) + at(ids[1]) + at(ids[2])) / 3;
+    result_.sheets.resize(sheets_.count);
+    for (auto u = first; u != uses(t).end(); ++u) {
+      SheetFate& fate = result_.sheets[sheets_.sheet[u->source]];
+      if (behind != front)
+        fate.on_faces.add(area, centre);
+      else if (behind == outside_region)
+        fate.outside.add(area, centre);
+      else if (u != first)
+        fate.repeated.add(area, centre);
+      else
+        fate.kept += area;
+    }
+    if (behind != front || behind == outside_region) return;
+    LabelledComplex::SheetFace face{ids, behind, sheets_.sheet[first->source], 0};
+    if (first->turned) std::swap(face.ids[1], face.ids[2]);
+    result_.complex.sheets.push_back(face);
+    part_of_.push_back(first->body);
   }
 
   /// Measures how far a body's surface has moved to a contact: outwards over a gap, inwards over an overlap.
@@ -357,7 +427,9 @@ class ComplexBuilder {
   std::size_t bodies_;
   double tolerance_;
   OverlapRule rule_;
+  const SoupSheets& sheets_;
   ComplexResult result_;
+  std::vector<std::uint32_t> part_of_;  ///< surface of the soup of each face of a sheet
   std::vector<Welded> welded_;
   std::vector<Use> uses_;
   SurfaceCells cells_;
@@ -368,8 +440,8 @@ class ComplexBuilder {
 };
 
 ComplexResult build_complex(const ImprintedSurfaces& imprinted, const SurfaceSoup& soup, std::size_t bodies,
-                            double tolerance, OverlapRule rule) {
-  return ComplexBuilder(imprinted, soup, bodies, tolerance, rule).build();
+                            double tolerance, OverlapRule rule, const SoupSheets& sheets) {
+  return ComplexBuilder(imprinted, soup, bodies, tolerance, rule, sheets).build();
 }
 
 }  // namespace tetwright

@@ -29,9 +29,19 @@ class LabelledComplex {
     Triangle ids;
     RegionIndex behind, front;  ///< regions; the normal points to the front
   };
+  /// A triangle of an open sheet inside a region.
+  struct SheetFace {
+    Triangle ids;  ///< as the sheet is oriented
+    RegionIndex region;
+    std::uint32_t sheet;  ///< index into MesherInput::sheets
+    /// Faces of one component are connected across edges of exactly two triangles of sheets.
+    std::uint32_t component;
+  };
 
   std::vector<Vec3> points;
   std::vector<Face> faces;  ///< with different regions on both sides
+  std::vector<SheetFace> sheets;
+  std::uint32_t sheet_components = 0;
   std::span<const Source> sources(Index face) const {
     return std::span(sources_).subspan(starts_[face], starts_[face + 1] - starts_[face]);
   }
@@ -40,10 +50,11 @@ class LabelledComplex {
     return faces[face].behind != outside_region && faces[face].front != outside_region &&
            sources(face).size() > 1;
   }
-  /// Edges, ascending, with other than two faces, or with faces of different pairs of regions.
+  /// Edges, ascending, with other than two faces, or with faces of different pairs of regions; also those at
+  /// which a sheet meets a face.
   const std::vector<std::array<Index, 2>>& junctions() const { return junctions_; }
-  /// True if there is a contact or a junction.
-  bool any() const { return !junctions_.empty() || has_contacts_; }
+  /// True if there is a contact, a junction or a sheet.
+  bool any() const { return !junctions_.empty() || has_contacts_ || !sheets.empty(); }
 
  private:
   friend class ComplexBuilder;
@@ -69,6 +80,32 @@ struct BodyContact {
   double largest_overlap = 0;  ///< likewise
 };
 
+/// Triangles of sheets that are in no sheet of the complex.
+struct SheetLoss {
+  double area = 0;            ///< input units squared
+  Vec3 place = Vec3::Zero();  ///< the centre of the largest triangle
+  double largest = 0;         ///< area of that triangle
+
+  void add(double own, const Vec3& centre) {
+    area += own;
+    if (own > largest) largest = own, place = centre;
+  }
+};
+
+/// The areas of a sheet, by fate.
+struct SheetFate {
+  double kept = 0;     ///< area in the complex, input units squared
+  SheetLoss outside;   ///< in no body
+  SheetLoss on_faces;  ///< on a face between two regions
+  SheetLoss repeated;  ///< on another sheet
+};
+
+/// Where sheets cross, branch, or share a border.
+struct SheetMeeting {
+  std::uint32_t first, second;  ///< sheets; may be the same one
+  Vec3 place;                   ///< input units
+};
+
 struct ComplexResult {
   LabelledComplex complex;
   /// Each body's own surface as it is in the complex, before later bodies carve it, but without what earlier
@@ -83,13 +120,23 @@ struct ComplexResult {
   std::vector<BodyContact> contacts;  ///< by pair
   std::vector<char> lost;             ///< by body: nothing of it is left after carving
   std::optional<Vec3> inconsistent;   ///< a point where the cells contradict the bodies' orientation
+  std::vector<SheetFate> sheets;      ///< by sheet
+  std::optional<SheetMeeting> sheets_meet;
+};
+
+/// The sheets among imprinted surfaces: those after the bodies.
+struct SoupSheets {
+  std::vector<std::uint32_t> sheet;  ///< by triangle of the soup; unused for bodies
+  std::size_t count = 0;
 };
 
 /// Builds the complex of closed bodies from their imprinted surfaces. A point belongs to the last body that
 /// contains it (positive winding number); among bodies that cross, the rule decides.
 /// \param soup what was imprinted; surfaces are bodies
-/// \param bodies number of bodies
+/// \param bodies number of bodies; surfaces of the soup from there on are open sheets
+/// \param sheets of the soup
 ComplexResult build_complex(const ImprintedSurfaces& imprinted, const SurfaceSoup& soup, std::size_t bodies,
-                            double tolerance, OverlapRule rule = OverlapRule::later);
+                            double tolerance, OverlapRule rule = OverlapRule::later,
+                            const SoupSheets& sheets = {});
 
 }  // namespace tetwright

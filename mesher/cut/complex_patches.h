@@ -14,20 +14,35 @@ namespace tetwright {
 /// The patches of a complex: the faces of one pair of regions that belong to the same patch of each of the
 /// bodies whose surface they are.
 struct ComplexPatches {
-  /// The faces of the complex; towards the outside if that is on one side.
+  /// The complex's points; with inner sheets, further ones.
+  std::vector<Vec3> points;
+  /// The faces of the complex, towards the outside if that is on one side; then those of inner sheets and of
+  /// their continuations.
   std::vector<Triangle> triangles;
   std::vector<std::uint16_t> patches;  ///< of each triangle
   /// A *sheet* is the faces of one pair of regions, ascending.
   std::map<std::pair<RegionIndex, RegionIndex>, std::size_t> sheets;
+  /// Also a sheet: the faces of one component of inner sheets in one region.
+  std::map<std::pair<std::uint32_t, RegionIndex>, std::size_t> inner_sheets;
   std::vector<std::size_t> sheet_of_patch;
+  /// Patches from this number on continue inner sheets beyond their free borders, see continue_sheets(). They
+  /// belong to the same sheet.
+  std::uint16_t first_continued = 0;
   /// Surface region of the input that each patch belongs to, or none. Where two bodies have one, that of the
   /// later body.
   std::vector<SurfaceRegion> groups;
 };
 
+/// The patches of inner sheets.
+struct SheetPatches {
+  SurfacePatches found;  ///< of LabelledComplex::sheets
+  double continued = 0;  ///< length of the strips beyond free borders, input units
+};
+
 /// \pre input.complex
 /// \param patches of each body's surface
 /// \throws InputError for more than 65,534 patches
-ComplexPatches complex_patches(const MesherInput& input, const std::vector<SurfacePatches>& patches);
+ComplexPatches complex_patches(const MesherInput& input, const std::vector<SurfacePatches>& patches,
+                               const SheetPatches& of_sheets);
 
 }  // namespace tetwright

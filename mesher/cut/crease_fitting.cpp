@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
 
@@ -313,7 +314,12 @@ void fit_creases(TetMesh& mesh, const FeatureSurface& surface, const MaterialFie
   Fitter(mesh, surface, labels, field, cell).run();
   std::vector<std::uint8_t> boundary(mesh.points.size(), 0);
   for (const Index p : labels.points()) boundary[p] = 1;
+  std::vector<InterfaceTriangle> inner;
+  std::copy_if(mesh.interfaces.begin(), mesh.interfaces.end(), std::back_inserter(inner),
+               [](const InterfaceTriangle& t) { return t.other == t.material; });
   mesh.interfaces = find_interfaces(mesh, &boundary);
+  const auto first_inner = static_cast<std::ptrdiff_t>(mesh.interfaces.size());
+  mesh.interfaces.insert(mesh.interfaces.end(), inner.begin(), inner.end());
   std::vector<Triangle> faces;
   faces.reserve(mesh.interfaces.size());
   for (const InterfaceTriangle& t : mesh.interfaces) faces.push_back(t.ids);
@@ -322,6 +328,13 @@ void fit_creases(TetMesh& mesh, const FeatureSurface& surface, const MaterialFie
     for (std::size_t i = begin; i < end; ++i)
       mesh.interfaces[i].patch = patch_of(mesh, mesh.interfaces[i], labels, surface, cell);
   });
+  // Beyond the borders of sheets there is nothing.
+  mesh.interfaces.erase(std::remove_if(mesh.interfaces.begin() + first_inner, mesh.interfaces.end(),
+                                       [&](const InterfaceTriangle& t) {
+                                         return t.patch == surface.no_patch() ||
+                                                surface.is_continued(t.patch);
+                                       }),
+                        mesh.interfaces.end());
 }
 
 }  // namespace tetwright

@@ -60,6 +60,10 @@ void CreaseLabels::number_boundary() {
 void CreaseLabels::label_points() {
   parallel_for(0, points_.size(), CutGrains::searches, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
+      if (surface_.has_inner_sheets()) {
+        labels_[i] = label_at(static_cast<Index>(i));
+        continue;
+      }
       const std::vector<Index>& around = triangles_at_[i];
       const InterfaceTriangle& first = mesh_.interfaces[around.front()];
       Vec3 normal = Vec3::Zero();
@@ -79,6 +83,36 @@ void CreaseLabels::label_points() {
       labels_[i] = patch_label(mesh_.points[points_[i]], *sheet, first.other ? nullptr : &normal);
     }
   });
+}
+
+/// Erases inner sheets that only their continuations bring to a point with other sheets.
+void CreaseLabels::leave_out_continuations(const Vec3& p, std::set<std::size_t>& sheets) const {
+  if (sheets.size() < 2 || !surface_.has_inner_sheets()) return;
+  std::erase_if(sheets, [&](std::size_t sheet) {
+    if (!surface_.is_inner(sheet)) return false;
+    const auto place = surface_.nearest(p, sheet, Labelling::surface_reach * cell_);
+    return !place || surface_.is_continued(place->patch);
+  });
+}
+
+/// The label of a point of a mesh with inner sheets.
+FeatureLabel CreaseLabels::label_at(Index number) const {
+  const Vec3& p = mesh_.points[points_[number]];
+  std::set<std::size_t> sheets = sheets_at(number);
+  if (sheets.empty()) return {};
+  leave_out_continuations(p, sheets);
+  if (sheets.size() != 1) return junction_label(p, sheets);
+  Vec3 normal = Vec3::Zero();
+  bool is_outer = false;
+  for (const Index t : triangles_at_[number]) {
+    const InterfaceTriangle& face = mesh_.interfaces[t];
+    if (surface_.sheet_of(face) != *sheets.begin()) continue;
+    const Vec3& a = mesh_.points[face.ids[0]];
+    normal += (mesh_.points[face.ids[1]] - a).cross(mesh_.points[face.ids[2]] - a);
+    is_outer = !face.other;
+  }
+  normal.normalize();
+  return patch_label(p, *sheets.begin(), is_outer ? &normal : nullptr);
 }
 
 /// The label of a point on one sheet; Kind::none if it is far from it.

@@ -104,6 +104,8 @@ class CreaseLabels {
   };
   PatchSet on_sheet(const PatchSet& patches, std::size_t sheet) const;
   std::set<std::size_t> sheets_at(Index number) const;
+  void leave_out_continuations(const Vec3& p, std::set<std::size_t>& sheets) const;
+  FeatureLabel label_at(Index number) const;
   FeatureLabel junction_label(const Vec3& p, const std::set<std::size_t>& sheets) const;
   bool crosses(const SheetEdge& edge) const;
   std::vector<SheetEdge> crossing_edges() const;

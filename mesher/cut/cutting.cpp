@@ -45,7 +45,9 @@ Fate fate(const LabelledLattice& lattice, const Tet& t, RegionIndex& region) {
     if (region != on_interface && r != region) return Fate::cut;
     region = r;
   }
-  TETWRIGHT_CHECK(region != on_interface);  // moves leave no tet with all points on interfaces
+  // Moves leave no tet with all points on interfaces, but at the rims around sheets there are some.
+  if (region == on_interface && lattice.has_rims) region = lattice.first_region[t[0]];
+  TETWRIGHT_CHECK(region != on_interface);
   return (region == outside_region && !lattice.keep_outside) ? Fate::dropped : Fate::whole;
 }
 

@@ -6,19 +6,19 @@
 #include <set>
 
 #include "mesher/complex/labelled_complex.h"
-#include "mesher/cut/complex_patches.h"
 #include "mesher/tuning/cut_tuning.h"
 
 namespace tetwright {
 
 FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches,
-                               double corner_reach, std::shared_ptr<const MaterialField> field)
+                               double corner_reach, std::shared_ptr<const MaterialField> field,
+                               const SheetPatches& of_sheets)
     : field_(std::move(field)) {
   Items items;
   for (const MaterialLayer& layer : input.layers) bodies_[layer.tag] = 0;
   for (std::size_t b = 0; b < input.bodies.size(); ++b) bodies_[input.bodies[b].tag] = b;
   if (input.complex)
-    add_complex(input, patches, corner_reach, items);
+    add_complex(input, patches, of_sheets, corner_reach, items);
   else
     add_bodies(input, patches, corner_reach, items);
   no_patch_ = static_cast<Patch>(groups_.size());
@@ -86,12 +86,14 @@ void FeatureSurface::add_bodies(const MesherInput& input, const std::vector<Surf
 }
 
 void FeatureSurface::add_complex(const MesherInput& input, const std::vector<SurfacePatches>& patches,
-                                 double corner_reach, Items& items) {
-  const ComplexPatches found = complex_patches(input, patches);
+                                 const SheetPatches& of_sheets, double corner_reach, Items& items) {
+  const ComplexPatches found = complex_patches(input, patches, of_sheets);
   sheets_ = found.sheets;
+  inner_sheets_ = found.inner_sheets;
+  first_continued_ = found.first_continued;
   sheet_of_patch_ = found.sheet_of_patch;
   groups_ = found.groups;
-  add_triangles(input.complex->points, found.triangles, found.patches, 0, corner_reach, items);
+  add_triangles(found.points, found.triangles, found.patches, 0, corner_reach, items);
 }
 
 std::optional<std::size_t> FeatureSurface::sheet_of(const InterfaceTriangle& face) const {
@@ -105,6 +107,11 @@ std::optional<std::size_t> FeatureSurface::sheet_of(const InterfaceTriangle& fac
     const auto label = [](const std::optional<std::size_t>& body) {
       return static_cast<RegionIndex>(body ? *body + 1 : outside_region);
     };
+    if (face.other == face.material) {
+      const auto inner = inner_sheets_.find({face.patch, label(first)});
+      if (inner == inner_sheets_.end()) return {};
+      return inner->second;
+    }
     const auto known = sheets_.find(std::minmax(label(first), label(second)));
     if (known == sheets_.end()) return {};
     return known->second;

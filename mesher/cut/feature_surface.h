@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/geometry/projection_tree.h"
+#include "mesher/cut/complex_patches.h"
 #include "mesher/distance/material_field.h"
 #include "tetwright/mesher_input.h"
 #include "tetwright/surface_mesh.h"
@@ -42,8 +43,9 @@ class FeatureSurface : public ReferenceSurface {
   /// \param patches of each body, in the order of `input.bodies`; renumbered from 0, body by body
   /// \param corner_reach as for find_creases()
   /// \param field answers queries for faces without patches
+  /// \param of_sheets patches of the inner sheets of the input's complex, if it has any
   FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach,
-                 std::shared_ptr<const MaterialField> field);
+                 std::shared_ptr<const MaterialField> field, const SheetPatches& of_sheets = {});
 
   double signed_distance(const Vec3& point, MaterialTag material) const override {
     return field_->signed_distance(point, material);
@@ -63,9 +65,16 @@ class FeatureSurface : public ReferenceSurface {
   /// The sheet that a face lies on. If the surfaces are one complex, the faces between two of its regions are
   /// a sheet; otherwise each body's surface is one, and a face between two materials lies on that of the
   /// later body, since later bodies carve earlier ones. std::nullopt between layers of one body, on the box
-  /// of a meshed outside, and between regions that have no face in common in the complex.
+  /// of a meshed outside, and between regions that have no face in common in the complex. A face with one
+  /// material on both sides lies on an inner sheet, whose component is the face's patch.
   std::optional<std::size_t> sheet_of(const InterfaceTriangle& face) const;
   std::size_t sheet_of(Patch patch) const { return sheet_of_patch_[patch]; }
+  bool has_inner_sheets() const { return !inner_sheets_.empty(); }
+  bool is_inner(std::size_t sheet) const { return has_inner_sheets() && sheet >= sheets_.size(); }
+  /// True for patches that continue an inner sheet beyond its border.
+  bool is_continued(Patch patch) const {
+    return has_inner_sheets() && patch >= first_continued_ && patch < no_patch_;
+  }
   /// True if creases include the curves in which three or more sheets meet.
   bool has_junctions() const override { return !sheets_.empty(); }
   /// The closest point on a sheet within `at_most`.
@@ -103,8 +112,8 @@ class FeatureSurface : public ReferenceSurface {
     std::vector<Vec3> points;
     std::vector<ProjectionTree::Item> triangles, segments;
   };
-  void add_complex(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach,
-                   Items& items);
+  void add_complex(const MesherInput& input, const std::vector<SurfacePatches>& patches,
+                   const SheetPatches& of_sheets, double corner_reach, Items& items);
   void add_bodies(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach,
                   Items& items);
   /// Adds triangles with their patches, and the creases between these.
@@ -115,6 +124,8 @@ class FeatureSurface : public ReferenceSurface {
   std::map<MaterialTag, std::size_t> bodies_;  ///< body of each material and layer
   /// Sheet of each pair of regions of the complex, ascending; empty without a complex.
   std::map<std::pair<RegionIndex, RegionIndex>, std::size_t> sheets_;
+  std::map<std::pair<std::uint32_t, RegionIndex>, std::size_t> inner_sheets_;  ///< by component and region
+  Patch first_continued_ = 0;
   std::vector<std::size_t> sheet_of_patch_;
   ProjectionTree triangles_, creases_, corner_points_;
   std::vector<Vec3> normals_;  ///< of the items of triangles_

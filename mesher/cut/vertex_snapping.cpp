@@ -165,7 +165,7 @@ class Mover {
   /// The candidate for a point; std::nullopt if no cut is too close to it or it must not be moved.
   std::optional<Candidate> as_candidate(Index p, FieldSampler& sampler) const {
     const RegionIndex own = lattice_.first_region[p];
-    if (is_certain(p)) return std::nullopt;
+    if (lattice_.is_on[p] || is_certain(p)) return std::nullopt;
     const std::optional<RegionSet> regions = pure_regions(lattice_, p);
     if (!regions) return std::nullopt;
     const unsigned faces = lattice_.box_faces(p);
@@ -175,7 +175,7 @@ class Mover {
     for (Index t : star(p))
       for (Index q : lattice_.tets[t]) {
         const RegionIndex r = lattice_.first_region[q];
-        if (r == own) continue;
+        if (r == own || lattice_.is_on[q]) continue;
         const double share = lattice_.cut_share(p, own, q, r);
         too_near |= share <= (lattice_.is_centre[p] == lattice_.is_centre[q] ? Snapping::near_long
                                                                              : Snapping::near_short);

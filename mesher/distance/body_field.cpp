@@ -9,6 +9,19 @@
 
 namespace tetwright {
 
+namespace {
+
+/// Cells of one voxel at these voxels.
+RefinementRegions finest_cells(std::vector<MortonKey> voxels) {
+  for (MortonKey& key : voxels) key >>= 3;
+  voxels.erase(std::unique(voxels.begin(), voxels.end()), voxels.end());
+  RefinementRegions finest;
+  finest.cells = {{}, std::move(voxels)};
+  return finest;
+}
+
+}  // namespace
+
 BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool keep_outside,
                       const ThinWalls::Limits& limits, const RefinementBudget& budget,
                       std::vector<BodyCells> cells, Progress* progress) {
@@ -86,8 +99,13 @@ BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool ke
   }
   std::shared_ptr<const ContactZone> zone;
   if (input.complex) zone = std::make_shared<const ContactZone>(*input.complex, voxels);
+  std::shared_ptr<const SheetZone> sheets;
+  if (input.complex && !input.complex->sheets.empty()) {
+    sheets = std::make_shared<const SheetZone>(*input.complex, voxels);
+    result.finer = combine(std::move(result.finer), finest_cells(sheets->voxels()));
+  }
   result.field = std::make_shared<const LevelSetField>(voxels, std::move(level_sets), std::move(regions),
-                                                       std::move(zone));
+                                                       std::move(zone), std::move(sheets));
   return result;
 }
 

@@ -271,11 +271,12 @@ class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
 
 LevelSetField::LevelSetField(const GridFrame& voxels, std::vector<std::shared_ptr<const LevelSet>> level_sets,
                              std::vector<LevelSetRegion> regions, std::shared_ptr<const ContactZone> zone,
-                             int refinement)
+                             std::shared_ptr<const SheetZone> sheets, int refinement)
     : MaterialField(voxels, names_of(regions), level_set_band, refinement),
       level_sets_(std::move(level_sets)),
       level_set_regions_(std::move(regions)),
-      zone_(std::move(zone)) {
+      zone_(std::move(zone)),
+      sheets_(std::move(sheets)) {
   const std::vector<RegionTerm>& carving = level_set_regions_[outside_region].terms;
   for (std::size_t r = 1; r < level_set_regions_.size(); ++r)
     has_layers_ |= r > 1 && level_set_regions_[r].of_complex == level_set_regions_[r - 1].of_complex;
@@ -291,7 +292,8 @@ LevelSetField::~LevelSetField() { drop_samplers(); }
 std::unique_ptr<FieldSampler> LevelSetField::sampler() const { return std::make_unique<Sampler>(*this); }
 
 std::shared_ptr<const MaterialField> LevelSetField::refined(int refinement) const {
-  return std::make_shared<LevelSetField>(voxels(), level_sets_, level_set_regions_, zone_, refinement);
+  return std::make_shared<LevelSetField>(voxels(), level_sets_, level_set_regions_, zone_, sheets_,
+                                         refinement);
 }
 
 const WallChanges* LevelSetField::wall_changes() const {
@@ -303,7 +305,8 @@ const WallChanges* LevelSetField::wall_changes() const {
 std::shared_ptr<const MaterialField> LevelSetField::with_true_walls() const {
   std::vector<std::shared_ptr<const LevelSet>> as_is;
   for (const auto& level_set : level_sets_) as_is.push_back(LevelSet::with_true_walls(level_set));
-  return std::make_shared<LevelSetField>(voxels(), std::move(as_is), level_set_regions_, zone_, refinement());
+  return std::make_shared<LevelSetField>(voxels(), std::move(as_is), level_set_regions_, zone_, sheets_,
+                                         refinement());
 }
 
 bool LevelSetField::contains(const Vec3& point) const {

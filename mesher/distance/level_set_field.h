@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mesher/complex/contact_zone.h"
+#include "mesher/complex/sheet_zone.h"
 #include "mesher/distance/level_set.h"
 #include "mesher/distance/material_field.h"
 
@@ -34,9 +35,10 @@ class LevelSetField final : public MaterialField, private WallChanges {
   /// \param voxels frame of the level sets
   /// \param regions the first is the outside
   /// \param zone where bodies meet, or null: there regions are decided by the triangles
+  /// \param sheets inside regions, or null; they change no distance
   LevelSetField(const GridFrame& voxels, std::vector<std::shared_ptr<const LevelSet>> level_sets,
                 std::vector<LevelSetRegion> regions, std::shared_ptr<const ContactZone> zone = {},
-                int refinement = 0);
+                std::shared_ptr<const SheetZone> sheets = {}, int refinement = 0);
   ~LevelSetField() override;
 
   std::unique_ptr<FieldSampler> sampler() const override;
@@ -44,6 +46,7 @@ class LevelSetField final : public MaterialField, private WallChanges {
   std::vector<MortonKey> interface_voxels() const override;
   std::vector<LeafOrigin> band_leaves(RegionIndex region) const override;
   const WallChanges* wall_changes() const override;
+  const SheetZone* sheets() const override { return sheets_.get(); }
 
   const std::vector<std::shared_ptr<const LevelSet>>& level_sets() const { return level_sets_; }
   const std::vector<LevelSetRegion>& level_set_regions() const { return level_set_regions_; }
@@ -66,6 +69,7 @@ class LevelSetField final : public MaterialField, private WallChanges {
   std::vector<LevelSetRegion> level_set_regions_;
   std::vector<std::size_t> own_terms_;  ///< by region
   std::shared_ptr<const ContactZone> zone_;
+  std::shared_ptr<const SheetZone> sheets_;
   bool has_layers_ = false;
 };
 

@@ -93,6 +93,7 @@ class FieldSampler {
 };
 
 class MaterialField;
+class SheetZone;
 
 /// The thin walls and gaps of surfaces where a field changes the distances, see thin_walls.h. All functions
 /// may be called concurrently; points are in the field's lattice units.
@@ -147,6 +148,8 @@ class MaterialField : public ReferenceSurface {
   virtual const WallChanges* wall_changes() const { return nullptr; }
   /// The volume from which the field is made; null for surfaces.
   virtual const VoxelVolume* volume() const { return nullptr; }
+  /// The sheets inside regions; null if there are none.
+  virtual const SheetZone* sheets() const { return nullptr; }
 
   const GridFrame& voxels() const { return voxels_; }
   const GridFrame& frame() const { return frame_; }  ///< of the lattice

@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesher/input/body_builder.h"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
 
 #include "common/geometry/surface_tree.h"
 #include "common/message_text.h"
+#include "mesher/complex/labelled_complex.h"
 #include "mesher/input/body_contacts.h"
 #include "mesher/input/surface_cleaning.h"
 #include "mesher/input/surface_components.h"
 #include "mesher/input/surface_measures.h"
+#include "mesher/tuning/input_tuning.h"
 #include "tetwright/error.h"
 
 namespace tetwright {
@@ -64,6 +69,46 @@ void arrange_shells(std::vector<SurfaceCell>& cells, NestedRule nested, std::vec
               cavity ? "solid and cavity alternate, as requested" : "filled, as requested");
 }
 
+/// A point inside a cell, next to the middle of its largest triangle.
+Vec3 place_inside(const RepairedSurface& s) {
+  double largest = -1;
+  Vec3 place = s.points[0];
+  for (const auto& [a, b, c] : s.triangles) {
+    const Vec3 normal = (s.points[b] - s.points[a]).cross(s.points[c] - s.points[a]);
+    const double size = normal.norm();
+    if (!(size > largest)) continue;
+    largest = size;
+    place = (s.points[a] + s.points[b] + s.points[c]) / 3 -
+            InputTuning::Cells::step_inside / std::sqrt(size) * normal;
+  }
+  return place;
+}
+
+/// Sorts cells by the height of their middle, highest first; at equal heights by y, then x.
+void order_from_top(std::vector<SurfaceCell>& cells) {
+  std::vector<std::pair<std::array<double, 3>, std::size_t>> order;
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    const RepairedSurface& s = cells[k].surface;
+    const double step = InputTuning::Cells::equal * (s.high - s.low).norm();
+    Vec3 middle = Vec3::Zero();
+    double volume = 0;
+    for (const auto& [a, b, c] : s.triangles) {
+      const Vec3 p = s.points[a] - s.low, q = s.points[b] - s.low, r = s.points[c] - s.low;
+      const double part = p.dot(q.cross(r));
+      volume += part;
+      middle += part * (p + q + r) / 4;
+    }
+    middle = s.low + middle / volume;
+    order.push_back(
+        {{-std::round(middle.z() / step), -std::round(middle.y() / step), -std::round(middle.x() / step)},
+         k});
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<SurfaceCell> sorted;
+  for (const auto& [key, k] : order) sorted.push_back(std::move(cells[k]));
+  cells = std::move(sorted);
+}
+
 }  // namespace
 
 MaterialTag BodyBuilder::free_tag() {
@@ -71,13 +116,15 @@ MaterialTag BodyBuilder::free_tag() {
   return next_tag_;
 }
 
-void BodyBuilder::add(std::vector<MaterialSurface> surfaces, NestedRule nested, RegionRule rule) {
+void BodyBuilder::add(std::vector<MaterialSurface> surfaces, NestedRule nested, RegionRule rule,
+                      const std::vector<Partition>& partitions) {
   for (MaterialSurface& s : surfaces) {
     std::vector<Diagnostic> findings;
     CleanedSurface cleaned = clean_surface(s.surface, s.file, findings);
     const std::vector<SurfaceRegion> groups = s.surface.groups;
-    if (rule == RegionRule::outer || !may_have_inner_walls(cleaned) ||
-        !add_cells(cleaned, s, nested, findings)) {
+    if (!add_layers(cleaned, s, nested, partitions, findings) &&
+        (rule == RegionRule::outer || !may_have_inner_walls(cleaned) ||
+         !add_cells(cleaned, s, nested, findings))) {
       s.surface = {};
       SurfaceRepair repaired = repair_cleaned(std::move(cleaned), s.file, nested, std::move(findings));
       findings = std::move(repaired.findings);
@@ -91,6 +138,103 @@ void BodyBuilder::add(std::vector<MaterialSurface> surfaces, NestedRule nested, 
       input_.findings.push_back(std::move(f));
     }
   }
+  for (std::uint32_t k = 0; k < partitions.size(); ++k) {
+    if (dividing_.contains(k)) continue;
+    const auto end = ends_.find(k);
+    throw InputError(
+        partitions[k].file, 0,
+        "the partition '" + partitions[k].name + "' divides no body: " +
+            (end == ends_.end()
+                 ? "it reaches the boundary of none; check its units and position, or continue it "
+                   "with a larger --extend"
+                 : end->second + "; use a larger --extend, or --sheet to keep it "
+                                 "as a sheet inside the body"));
+  }
+}
+
+/// Adds the cells into which partitions divide a body.
+/// \return false if they do not
+bool BodyBuilder::add_layers(const CleanedSurface& cleaned, const MaterialSurface& from, NestedRule nested,
+                             const std::vector<Partition>& partitions, std::vector<Diagnostic>& findings) {
+  const PartitionedSurface all = with_partitions(cleaned, from.surface.groups, partitions);
+  if (!all.any()) return false;
+  DividedSurface divided =
+      divide_surface(all.surface, contact_tolerance(contact_, diagonal_of(cleaned.points)), progress_);
+  if (divided.unresolved)
+    throw InputError(from.file, 0,
+                     "a partition cannot be joined with this surface at " + place_text(*divided.unresolved) +
+                         ": facets there are about as small as the contact tolerance; use a smaller "
+                         "--contact-tolerance");
+  if (nested != NestedRule::material && !may_have_inner_walls(cleaned)) {
+    // Cavities stay cavities.
+    std::vector<Diagnostic> unused;
+    const RepairedSurface body = repair_cleaned(cleaned, from.file, nested, unused).surface;
+    std::erase_if(divided.cells, [&](const SurfaceCell& cell) {
+      return winding_number(body.points, body.triangles, place_inside(cell.surface)) < 0.5;
+    });
+  }
+  report_partitions(divided, all, partitions, from);
+  if (divided.cells.size() < 2) return false;
+  add_finding(findings, DiagnosticCode::cells_separated, "cells between partitions", divided.cells.size(),
+              divided.cells[0].surface.points[0], "each a material of its own");
+  order_from_top(divided.cells);
+  add_bodies(std::move(divided.cells), from, all.groups);
+  return true;
+}
+
+/// Notes which partitions divide the body, and reports those that end inside.
+void BodyBuilder::report_partitions(const DividedSurface& divided, const PartitionedSurface& all,
+                                    const std::vector<Partition>& partitions, const MaterialSurface& from) {
+  const auto partition_of = [&](Index source) { return all.partition[source - all.body_triangles]; };
+  const std::size_t walled = std::count_if(divided.cells.begin(), divided.cells.end(),
+                                           [](const SurfaceCell& c) { return c.walled; });
+  std::map<std::uint32_t, double> loose;  // area inside
+  std::map<std::uint32_t, const WallTriangle*> border;
+  std::map<std::uint32_t, SheetLoss> outside;
+  for (const WallTriangle& w : divided.sheets) {
+    if (w.source < all.body_triangles) continue;
+    const std::uint32_t k = partition_of(w.source);
+    if (w.outside) {
+      if (!all.continued[w.source - all.body_triangles]) outside[k].add(w.area(), w.centre());
+      continue;
+    }
+    loose[k] += w.area();
+    if (w.at_border && (!border[k] || w.area() > border[k]->area())) border[k] = &w;
+  }
+  // A partition whose triangles are not all loose or outside is a wall somewhere.
+  std::map<std::uint32_t, double> given;
+  for (std::size_t t = 0; t < all.partition.size(); ++t) {
+    const Triangle& ids = all.surface.triangles[all.body_triangles + t];
+    const std::vector<Vec3>& p = all.surface.points;
+    given[all.partition[t]] += (p[ids[1]] - p[ids[0]]).cross(p[ids[2]] - p[ids[0]]).norm() / 2;
+  }
+  std::map<std::uint32_t, double> bound_none = loose;
+  for (const WallTriangle& w : divided.sheets)
+    if (w.outside && w.source >= all.body_triangles) bound_none[partition_of(w.source)] += w.area();
+  for (const auto& [k, area] : given) {
+    const bool divides = walled > 1 && bound_none[k] < (1 - InputTuning::Cells::equal) * area;
+    if (divides) dividing_.insert(k);
+    if (loose[k] > 0 && border[k]) {
+      const Vec3 place = border[k]->centre();
+      const std::string where = "it ends inside '" + from.name + "' at " + place_text(place);
+      ends_.try_emplace(k, where);
+      if (divides)
+        input_.findings.push_back({.code = DiagnosticCode::partition_ends,
+                                   .file = partitions[k].file,
+                                   .what = "a part of the partition '" + partitions[k].name +
+                                           "' that ends inside '" + from.name + "', with an area of " +
+                                           short_number(loose[k]),
+                                   .done = "left out, as it separates nothing",
+                                   .places = {place}});
+    }
+    if (const auto lost = outside.find(k); lost != outside.end() && lost->second.area > 0 && divides)
+      input_.findings.push_back({.code = DiagnosticCode::sheet_cut_off,
+                                 .file = partitions[k].file,
+                                 .what = "a part of the partition '" + partitions[k].name + "' outside '" +
+                                         from.name + "', with an area of " + short_number(lost->second.area),
+                                 .done = "left out",
+                                 .places = {lost->second.place}});
+  }
 }
 
 /// Adds the cells of a surface as bodies.
@@ -102,19 +246,24 @@ bool BodyBuilder::add_cells(const CleanedSurface& cleaned, const MaterialSurface
   if (!divided.has_inner_walls()) return false;
   arrange_shells(divided.cells, nested, findings);
   report_cells(divided, findings);
+  add_bodies(std::move(divided.cells), from, from.surface.groups);
+  return true;
+}
+
+void BodyBuilder::add_bodies(std::vector<SurfaceCell> cells, const MaterialSurface& from,
+                             const std::vector<SurfaceRegion>& groups) {
   std::set<std::string> used;
-  for (std::size_t k = 0; k < divided.cells.size(); ++k) {
-    SurfaceCell& cell = divided.cells[k];
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    SurfaceCell& cell = cells[k];
     cells_.insert(input_.bodies.size());
     input_.bodies.push_back({cell_name(cell, k + 1, from, used), k == 0 ? from.tag : free_tag(), from.file,
-                             std::move(cell.surface), from.surface.groups});
+                             std::move(cell.surface), groups});
   }
-  return true;
 }
 
 std::string BodyBuilder::cell_name(const SurfaceCell& cell, std::size_t number, const MaterialSurface& from,
                                    std::set<std::string>& used) const {
-  if (cell.group) {
+  if (cell.group && *cell.group < from.surface.groups.size()) {
     const std::string& group = from.surface.groups[*cell.group].name;
     if (!group.empty() && used.insert(group).second) return group;
   }

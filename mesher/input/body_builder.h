@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "mesher/input/divided_surface.h"
+#include "mesher/input/partitioning.h"
 #include "tetwright/mesher_input.h"
 #include "tetwright/progress.h"
 
@@ -24,10 +27,12 @@ class BodyBuilder {
 
   /// Repairs the surfaces one by one and appends each as a body, followed by its nested components; or each
   /// of its cells, if inner walls divide it.
-  /// \throws InputError as repair_surface() does
+  /// \param partitions further walls between cells
+  /// \throws InputError as repair_surface() does; for a partition that divides nothing
   /// \throws UsageError for a contact tolerance that is not above 0
   /// \throws Interrupted
-  void add(std::vector<MaterialSurface> surfaces, NestedRule nested, RegionRule rule);
+  void add(std::vector<MaterialSurface> surfaces, NestedRule nested, RegionRule rule,
+           const std::vector<Partition>& partitions = {});
 
   /// Renames the cells that contain the points.
   /// \throws UsageError for a point that is in no cell, or in a cell that another seed names differently
@@ -37,6 +42,12 @@ class BodyBuilder {
   MaterialTag free_tag();
   bool add_cells(const CleanedSurface& cleaned, const MaterialSurface& from, NestedRule nested,
                  std::vector<Diagnostic>& findings);
+  bool add_layers(const CleanedSurface& cleaned, const MaterialSurface& from, NestedRule nested,
+                  const std::vector<Partition>& partitions, std::vector<Diagnostic>& findings);
+  void add_bodies(std::vector<SurfaceCell> cells, const MaterialSurface& from,
+                  const std::vector<SurfaceRegion>& groups);
+  void report_partitions(const DividedSurface& divided, const PartitionedSurface& all,
+                         const std::vector<Partition>& partitions, const MaterialSurface& from);
   void report_cells(const DividedSurface& divided, std::vector<Diagnostic>& findings) const;
   std::string cell_name(const SurfaceCell& cell, std::size_t number, const MaterialSurface& from,
                         std::set<std::string>& used) const;
@@ -47,6 +58,9 @@ class BodyBuilder {
   Progress* progress_;
   MaterialTag next_tag_ = 1;
   std::set<std::size_t> cells_;  ///< bodies that are cells
+  /// Partitions that divide a body, and where borders of others end inside one.
+  std::set<std::uint32_t> dividing_;
+  std::map<std::uint32_t, std::string> ends_;
 };
 
 }  // namespace tetwright

@@ -95,6 +95,53 @@ void add_overlap(const BodyOverlap& overlap, OverlapRule rule, MesherInput& inpu
                             .places = {overlap.place}});
 }
 
+/// Reports the parts of sheets that are not faces of the complex.
+/// \throws InputError for a sheet without a face in it
+void report_sheets(const std::vector<SheetFate>& fates, MesherInput& input) {
+  for (std::size_t k = 0; k < fates.size(); ++k) {
+    const SheetFate& fate = fates[k];
+    const MesherInput::Sheet& sheet = input.sheets[k];
+    const std::string name = "the sheet '" + sheet.group.name + "'";
+    if (fate.kept == 0 && fate.outside.area > 0)
+      throw InputError(sheet.file, 0,
+                       name + " is in no body, the largest triangle at " + place_text(fate.outside.place) +
+                           "; check its units and position, or leave it out");
+    if (fate.kept == 0 && fate.on_faces.area > 0)
+      throw InputError(sheet.file, 0,
+                       name + " lies on the boundary of a body, at " + place_text(fate.on_faces.place) +
+                           ", and not inside; to name faces of the boundary, give the body's surface named "
+                           "groups");
+    if (fate.kept == 0)
+      throw InputError(
+          sheet.file, 0,
+          name + " lies on another sheet, at " + place_text(fate.repeated.place) + "; leave one of them out");
+    const auto note = [&](DiagnosticCode code, const SheetLoss& loss, const char* where) {
+      if (!(loss.area > 0)) return;
+      input.findings.push_back(
+          {.code = code,
+           .file = sheet.file,
+           .what = "a part of " + name + " " + where + ", with an area of " + short_number(loss.area),
+           .done = "left out",
+           .places = {loss.place}});
+    };
+    note(DiagnosticCode::sheet_cut_off, fate.outside, "outside all bodies");
+    note(DiagnosticCode::sheet_on_faces, fate.on_faces, "on the boundary of a body");
+    note(DiagnosticCode::sheet_on_faces, fate.repeated, "on another sheet");
+  }
+}
+
+/// \throws InputError
+[[noreturn]] void refuse_meeting(const SheetMeeting& meeting, const MesherInput& input) {
+  const std::string first = "'" + input.sheets[meeting.first].group.name + "'",
+                    second = "'" + input.sheets[meeting.second].group.name + "'";
+  throw InputError(
+      input.sheets[meeting.second].file, 0,
+      (meeting.first == meeting.second ? "the sheet " + first + " branches or crosses itself"
+                                       : "the sheets " + first + " and " + second + " meet") +
+          " at " + place_text(meeting.place) +
+          ", and only sheets that are apart can be meshed; separate them there, or leave one out");
+}
+
 MaterialTag free_tag(const MesherInput& input) {
   std::set<MaterialTag> used;
   for (const MesherInput::Body& body : input.bodies) used.insert(body.tag);
@@ -128,10 +175,16 @@ double contact_tolerance(const ContactOptions& options, double diagonal) {
   return tolerance;
 }
 
-void join_bodies(MesherInput& input, const ContactOptions& options, Progress* progress) {
+void join_bodies(MesherInput& input, const SheetSoup& sheets, const ContactOptions& options,
+                 Progress* progress) {
   const double tolerance = contact_tolerance(options, (input.high - input.low).norm());
-  if (input.bodies.size() < 2 || !boxes_meet(input, tolerance)) return;
+  if (sheets.empty() && (input.bodies.size() < 2 || !boxes_meet(input, tolerance))) return;
   const auto not_joined = [&](const std::string& file, const std::string& why, const Vec3& place) {
+    if (!sheets.empty())
+      throw InputError(file, 0,
+                       "the sheet '" + input.sheets[0].group.name +
+                           "' cannot be joined with this surface, at " + place_text(place) + ": " + why +
+                           "; repair the surface, or leave the sheet out");
     input.findings.push_back({.code = DiagnosticCode::bodies_not_joined,
                               .file = file,
                               .what = "surfaces that meet are not joined",
@@ -145,9 +198,12 @@ void join_bodies(MesherInput& input, const ContactOptions& options, Progress* pr
                            body.name + "', which is only " +
                            short_number((body.surface.high - body.surface.low).norm()) +
                            " across; use a smaller --contact-tolerance");
-  const SurfaceSoup soup = soup_of(input);
+  SurfaceSoup soup = soup_of(input);
+  SoupSheets in_soup;
+  in_soup.count = input.sheets.size();
+  if (!sheets.empty()) sheets.append_to(soup, static_cast<std::uint32_t>(input.bodies.size()), in_soup.sheet);
   const ImprintedSurfaces imprinted = imprint_surfaces(soup, tolerance, progress);
-  if (!imprinted.any) return;
+  if (!imprinted.any && sheets.empty()) return;
   for (const MesherInput::Body& body : input.bodies)
     if (!is_closed(body.surface)) {
       not_joined(body.file, "its surface is open; contacts are accurate to a cell", body.surface.points[0]);
@@ -160,7 +216,8 @@ void join_bodies(MesherInput& input, const ContactOptions& options, Progress* pr
                *imprinted.unresolved);
     return;
   }
-  ComplexResult found = build_complex(imprinted, soup, input.bodies.size(), tolerance, options.overlap);
+  ComplexResult found =
+      build_complex(imprinted, soup, input.bodies.size(), tolerance, options.overlap, in_soup);
   if (found.inconsistent) {
     not_joined(input.bodies.back().file, "a surface crosses itself there; contacts are accurate to a cell",
                *found.inconsistent);
@@ -168,6 +225,8 @@ void join_bodies(MesherInput& input, const ContactOptions& options, Progress* pr
   }
   // Meshing refuses a body that later ones cover as a whole.
   if (std::count(found.lost.begin(), found.lost.end(), 1) > 0) return;
+  report_sheets(found.sheets, input);
+  if (found.sheets_meet) refuse_meeting(*found.sheets_meet, input);
   for (const BodyOverlap& o : found.overlaps) add_overlap(o, options.overlap, input);
   add_common_volumes(found, input);
   for (const BodyContact& c : found.contacts)

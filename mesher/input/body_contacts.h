@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "mesher/input/sheet_surfaces.h"
 #include "tetwright/mesher_input.h"
 #include "tetwright/progress.h"
 
@@ -13,12 +14,14 @@ double contact_tolerance(const ContactOptions& options, double diagonal);
 
 /// Joins closed bodies that meet: sets MesherInput::complex, contacts and overlaps, and replaces the surfaces
 /// of the bodies by what they are in the complex. Nothing changes if no two surfaces come closer than the
-/// tolerance.
+/// tolerance. Sheets become faces of the complex inside its regions; parts that are in no region or on other
+/// faces are reported.
 /// \param progress may be null
-/// \throws InputError for surfaces that cannot be joined, a body that the tolerance swallows, and bodies that
-///   cross with OverlapRule::error
+/// \throws InputError for surfaces that cannot be joined, a body that the tolerance swallows, bodies that
+///   cross with OverlapRule::error, sheets in bodies that are not closed, and a sheet that is in no body
 /// \throws UsageError for a tolerance that is not above 0
 /// \throws Interrupted
-void join_bodies(MesherInput& input, const ContactOptions& options, Progress* progress);
+void join_bodies(MesherInput& input, const SheetSoup& sheets, const ContactOptions& options,
+                 Progress* progress);
 
 }  // namespace tetwright

@@ -111,8 +111,10 @@ class SurfaceDivider {
   }
 
   void count_borders() {
+    at_border_.assign(triangles_.size(), 0);
     for_each_edge(triangles_, [&](std::span<const EdgeUse> edge) {
       if (edge.size() != 1) return;
+      at_border_[edge[0].triangle] = 1;
       const auto [a, b] = ends_of(edge[0].key);
       if (result_.border_edges++ == 0) result_.border = (points_[a] + points_[b]) / 2;
     });
@@ -186,6 +188,10 @@ class SurfaceDivider {
       ++result_.sheet_triangles;
       result_.sheet_area += own;
       if (behind == label(outside_)) result_.outside_sheet_area += own;
+      result_.sheets.push_back({{corner(t, 0), corner(t, 1), corner(t, 2)},
+                                source_[t],
+                                behind == label(outside_),
+                                at_border_[t] != 0});
       if (own > largest) largest = own, result_.sheet = centre(t);
     }
   }
@@ -291,6 +297,7 @@ class SurfaceDivider {
   Index outside_ = 0;                   ///< a number of labels_ after those of the cells
   std::optional<DisjointSets> labels_;  ///< cells that are joined
   std::vector<char> is_outside_;        ///< by cell
+  std::vector<char> at_border_;         ///< by triangle
   std::vector<double> volumes_, areas_;
   double total_ = 0;  ///< volume of all bounded cells
 };

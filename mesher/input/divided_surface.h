@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -21,6 +22,17 @@ struct SurfaceCell {
   bool walled = false;  ///< shares a triangle with another cell
 };
 
+/// A triangle that bounds no cell.
+struct WallTriangle {
+  std::array<Vec3, 3> corners;
+  Index source;    ///< the triangle of the surface that it is a part of
+  bool outside;    ///< not in a cell
+  bool at_border;  ///< has an edge that no other triangle has
+
+  double area() const { return (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() / 2; }
+  Vec3 centre() const { return (corners[0] + corners[1] + corners[2]) / 3; }
+};
+
 /// The cells of a surface, and what bounds none.
 struct DividedSurface {
   /// By volume, largest first; those that differ by less than InputTuning::Cells::equal by their lowest
@@ -30,9 +42,10 @@ struct DividedSurface {
   std::optional<Vec3> border;    ///< the middle of one
   /// Triangles with the same cell, or the outside, on both sides; they are in no cell's surface.
   std::size_t sheet_triangles = 0;
-  double sheet_area = 0;            ///< input units squared
-  double outside_sheet_area = 0;    ///< the part with the outside on both sides
-  std::optional<Vec3> sheet;        ///< the centre of the largest one
+  double sheet_area = 0;          ///< input units squared
+  double outside_sheet_area = 0;  ///< the part with the outside on both sides
+  std::optional<Vec3> sheet;      ///< the centre of the largest one
+  std::vector<WallTriangle> sheets;
   std::size_t dissolved_cells = 0;  ///< too small or thin, joined with a neighbour
   std::optional<Vec3> dissolved;    ///< on the boundary of one
   std::size_t crossing_pairs = 0;   ///< triangles of one sheet that cross each other

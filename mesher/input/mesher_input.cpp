@@ -13,6 +13,7 @@
 #include "mesher/input/body_contacts.h"
 #include "mesher/input/qualified_names.h"
 #include "mesher/input/self_crossings.h"
+#include "mesher/input/sheet_surfaces.h"
 #include "mesher/tuning/input_tuning.h"
 #include "tetwright/error.h"
 
@@ -120,22 +121,31 @@ double largest_coordinate(const MesherInput& input) {
 
 MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers,
                               NestedRule nested, const ContactOptions& contact, const RegionOptions& regions,
-                              Progress* progress) {
+                              Progress* progress, SheetOptions sheets) {
   if (surfaces.empty()) throw UsageError("there is no surface to mesh");
   MesherInput input;
   name_groups(surfaces, input.findings);
   input.groups = measure_groups(surfaces);
   std::set<MaterialTag> tags = tags_in_use(surfaces, layers);
   BodyBuilder builder(input, std::move(tags), contact, progress);
-  builder.add(std::move(surfaces), nested, regions.rule);
+  std::vector<Partition> partitions;
+  for (const SheetSurface& s : sheets.surfaces)
+    if (s.divides) partitions.push_back(make_partition(s, sheets.extend, input.findings));
+  builder.add(std::move(surfaces), nested, regions.rule, partitions);
   builder.name(regions.seeds);
   input.layers = std::move(layers);
   find_bounding_box(input);
   validate_materials(input);
   require_measurable(longest_side(input), largest_coordinate(input), "surface", input.bodies[0].file);
+  SheetSoup inner;
+  for (const SheetSurface& s : sheets.surfaces)
+    if (!s.divides) inner.add(s, input.sheets, input.findings);
+  if (!inner.empty() && !input.layers.empty())
+    throw UsageError("sheets and layers cannot be combined: a sheet would end at the layer '" +
+                     input.layers[0].name + "'; leave out one of them, or give the layer as a surface");
   const double tolerance = contact_tolerance(contact, (input.high - input.low).norm());
   for (MesherInput::Body& body : input.bodies) resolve_self_crossings(body, tolerance, progress);
-  join_bodies(input, contact, progress);
+  join_bodies(input, inner, contact, progress);
   return input;
 }
 

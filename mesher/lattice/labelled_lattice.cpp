@@ -181,6 +181,35 @@ LabelledLattice label_lattice(LatticePoints points, std::vector<NearestRegion> n
   return lattice;
 }
 
+void mark_rims(LabelledLattice& lattice, const SheetedField& field) {
+  lattice.has_rims = true;
+  const std::vector<Index>& points = lattice.stars.points();
+  const auto separated = [&](RegionIndex a, RegionIndex b) {
+    return field.part(a).region != field.part(b).region || field.component_between(a, b) != no_index;
+  };
+  // The part with sides of fewer sheets is the outer one.
+  const auto is_outer = [&](RegionIndex a, RegionIndex b) {
+    const std::size_t of_a = field.part(a).sides.size(), of_b = field.part(b).sides.size();
+    return of_a != of_b ? of_a < of_b : a < b;
+  };
+  parallel_for(0, points.size(), LatticeGrains::sampled_points, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const RegionIndex own = lattice.first_region[points[s]];
+      bool at_rim = false, free = true;
+      for (const Index t : lattice.stars.tets(points[s]))
+        for (const Index q : lattice.tets[t]) {
+          const RegionIndex other = lattice.first_region[q];
+          if (other == own) continue;
+          if (separated(own, other))
+            free = false;
+          else
+            at_rim |= is_outer(own, other);
+        }
+      if (at_rim && free) lattice.is_on[points[s]] = 1;
+    }
+  });
+}
+
 void read_star_values(LabelledLattice& lattice, const MaterialField& field) {
   const std::vector<Index>& points = lattice.stars.points();
   parallel_for(0, points.size(), LatticeGrains::sampled_points, [&](std::size_t begin, std::size_t end) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesher/distance/material_field.h"
+#include "mesher/distance/sheeted_field.h"
 #include "mesher/lattice/lattice.h"
 #include "mesher/lattice/star_map.h"
 #include "mesher/lattice/tet_list.h"
@@ -26,10 +27,12 @@ class LabelledLattice {
   /// 1 for centres of leaves. Long edges join two centres or two corners, short ones a centre and a corner.
   std::vector<std::uint8_t> is_centre;
   std::vector<RegionIndex> first_region;  ///< region of each point before it was moved onto an interface
-  std::vector<std::uint8_t> is_on;        ///< 1 for points that were moved onto an interface
-  TetList tets;                           ///< positive
-  StarMap stars;                          ///< of all points of tets with more than one region
+  /// 1 for points that were moved onto an interface, and for those of mark_rims().
+  std::vector<std::uint8_t> is_on;
+  TetList tets;   ///< positive
+  StarMap stars;  ///< of all points of tets with more than one region
   bool keep_outside = false;
+  bool has_rims = false;     ///< see mark_rims()
   std::array<int, 3> box{};  ///< lattice units
 
   /// The faces of the box that a point is on, see tetwright::box_faces().
@@ -85,6 +88,11 @@ class LabelledLattice {
 /// \param isolated_vertices receives their number; may be null
 LabelledLattice label_lattice(LatticePoints points, std::vector<NearestRegion> nearest, TetList tets,
                               std::size_t region_count, bool keep_outside, std::size_t* isolated_vertices);
+
+/// Marks points as if on an interface, so that no cut is made, where parts of a region meet that no sheet
+/// separates: at the rims of the zones around sheets. Exempt are points with neighbours from which a sheet or
+/// an interface separates them.
+void mark_rims(LabelledLattice& lattice, const SheetedField& field);
 
 /// Reads the signed distances of all stars. Where a point's own region is not the nearest in the field
 /// (isolated vertices, ties), its distance is lowered just below the others, so that every cut is defined.

@@ -73,6 +73,22 @@ struct ComplexTuning {
     /// degrees, entirely at less than 37 degrees.
     static constexpr double facing = -0.7, facing_entirely = -0.8;
   };
+
+  /// Where points have a side of a sheet.
+  struct Sheets {
+    /// Voxels this far from a sheet, voxels, are cells of their own: all edges that cross the sheet then join
+    /// points of such cells.
+    static constexpr double fine_cells = 0.75;
+    /// Distance from a sheet up to which points have a side, voxels: both ends of an edge of such cells that
+    /// crosses the sheet, also where they have moved.
+    static constexpr double reach = 1.75;
+    /// Length of the strips that continue sheets beyond their borders, voxels: the reach, also at corners
+    /// where the gap between two strips is filled by chords.
+    static constexpr double continued = 2 * reach;
+    /// Distance from an edge, voxels, at which the side of another sheet at that edge is certain: well above
+    /// rounding, and below the size of facets.
+    static constexpr double step_inside = 1e-3;
+  };
 };
 
 }  // namespace tetwright

@@ -11,6 +11,7 @@ namespace tetwright {
 struct DistanceGrains {
   static constexpr std::size_t elements = 4096;          ///< points and triangles, some nanoseconds each
   static constexpr std::size_t sampled_voxels = 512;     ///< a microsecond or more each
+  static constexpr std::size_t sheet_points = 1024;      ///< mostly far from all sheets
   static constexpr std::size_t cells_of_regions = 1024;  ///< whose regions are looked up
   static constexpr std::size_t marched_voxels = 2048;    ///< of an expected solid
   static constexpr std::size_t cap_cells = 256;          ///< with their corners and edges

@@ -10,7 +10,8 @@ namespace tetwright {
 /// rounding.
 struct InputGrains {
   static constexpr std::size_t triangles = 4096;
-  static constexpr std::size_t components = 16;  ///< each is compared with others
+  static constexpr std::size_t components = 16;    ///< each is compared with others
+  static constexpr std::size_t border_edges = 16;  ///< each is compared with all others
   static constexpr std::size_t voxels = 1 << 18;
 };
 
@@ -34,6 +35,21 @@ struct InputTuning {
     /// Relative difference below which volumes are equal, and the step of coordinates, in diagonals, at which
     /// lowest points are compared: the rounding of coordinates written with six digits.
     static constexpr double equal = 1e-6;
+    /// Step from the middle of a cell's largest triangle to a point inside, as a share of the triangle's
+    /// size: above rounding, below the thickness of cells.
+    static constexpr double step_inside = 1e-4;
+  };
+
+  /// Surfaces that divide bodies, continued beyond their borders.
+  struct Partitions {
+    /// Cosine between the directions of two edges on one side of a corner: 30 degrees, well below the corners
+    /// of a rectangle or a hexagon.
+    static constexpr double same_side = 0.866;
+    /// Smallest cosine between the sides of a corner and its middle for which the strip has its full width:
+    /// 60 degrees. Sharper ones would become arbitrarily long spikes.
+    static constexpr double min_cosine = 0.5;
+    /// Max edges of a border, which are compared with each other: 1e8 pairs take about a second.
+    static constexpr std::size_t max_border = 10'000;
   };
 
   /// Max number of labels named in messages: enough to recognise a table of labels, few enough to read.

@@ -124,4 +124,4 @@ def _():
     expect["volume"] = {str(k + 1): [total * (levels[k + 1] - levels[k]) / (high[1] - low[1]) * f for f in (0.5, 2)]
                         for k in range(count + 1)}
     return Case([domain], expect, walls=[sheet], places=places, raw_files=raw,
-                note="the horizons end before the walls, so that they have to be continued")
+                options=["--extend", "25%"], note="the horizons end before the walls, so that they have to be continued")

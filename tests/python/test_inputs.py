@@ -401,3 +401,12 @@ def test_stats_of_what_failed(tmp_path):
 def test_what_ran_out_of_time_says_where():
     with pytest.raises(tetwright.OutputError, match=r"\(in stage '[a-z ]+'\)"):
         tetwright.prepare(CUBE, target_tets=300, time_limit=1e-9)
+
+
+def test_sheets_and_partitions_are_surfaces_by_name():
+    sheet = np.array([(0.2, 0.3, 0.3), (0.8, 0.5, 0.3), (0.8, 0.5, 0.7), (0.2, 0.3, 0.7)]), np.array([(0, 1, 2), (0, 2, 3)])
+    mesh = tetwright.prepare(CUBE, sheet={"baffle": sheet}, target_tets=800)
+    (found,) = mesh.stats["result"]["sheets"]
+    assert found["name"] == "baffle" and abs(found["area"] - 0.4 * np.hypot(0.6, 0.2)) < 1e-4
+    level = np.array([(-1, -1, 0.4), (2, -1, 0.6), (2, 2, 0.6), (-1, 2, 0.4)]), sheet[1]
+    assert len(tetwright.mesh(CUBE, partition={"level": level}, resolution=10).material_names) == 2

@@ -64,7 +64,8 @@ struct CommandLine {
   std::vector<std::string> inputs;    ///< standard_input for "-"; for `sample` its name
   std::string input_format;           ///< extension for standard input, such as ".ply"; empty: not used
   std::vector<NamedValue> materials;  ///< inputs after the positional ones: name and file
-  PrepareOptions options;             ///< options of commands that make meshes; `check` uses some of them
+  std::vector<NamedValue> sheets, partitions;  ///< further inputs: name and file
+  PrepareOptions options;  ///< options of commands that make meshes; `check` uses some of them
   OutputOptions outputs;
   ConsoleOptions console;
   CheckOptions check;

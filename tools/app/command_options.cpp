@@ -220,6 +220,26 @@ void add_material_options(CLI::App& app, CommandLine& c) {
       {{"cells", RegionRule::cells}, {"outer", RegionRule::outer}},
       "Inner walls of a surface divide it into materials NAME_1, NAME_2 ... (by volume): cells, or are left "
       "out: outer");
+  const auto add_sheets = [&](const char* option, std::vector<NamedValue>& sheets, const char* help) {
+    app.add_option_function<std::vector<std::string>>(
+           option,
+           [option, &sheets](const std::vector<std::string>& all) {
+             for (const std::string& text : all) sheets.push_back(split_named(text, option, "FILE"));
+           },
+           help)
+        ->expected(1)
+        ->type_name("NAME=FILE")
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  };
+  add_sheets("--sheet", c.sheets,
+             "An open surface inside the bodies (baffle, membrane, fracture): its triangles become faces of "
+             "the mesh, the patch NAME, with one material on both sides; repeatable");
+  add_sheets("--partition", c.partitions,
+             "An open surface that cuts a body into materials (horizon, fault), named like those between "
+             "inner walls; repeatable");
+  add_length(
+      app, "--extend", c.options.bodies.extend,
+      "Continue the borders of --partition surfaces to the boundary where they end this far before it");
   app.add_option_function<std::vector<std::string>>(
          "--region",
          [&c](const std::vector<std::string>& all) {

@@ -32,6 +32,8 @@ void check_no_stream(const CommandLine& out) {
   check("--before", out.check.before);
   for (const std::string& file : out.check.surfaces) check("--surface", file);
   for (const NamedValue& m : out.materials) check("--material", m.value);
+  for (const NamedValue& s : out.sheets) check("--sheet", s.value);
+  for (const NamedValue& p : out.partitions) check("--partition", p.value);
   if (out.command == Command::batch) check("the file of jobs", out.inputs.front());
 }
 

@@ -6,7 +6,10 @@
 #include <cstdio>
 #include <optional>
 
+#include "common/geometry/box_tree.h"
+#include "common/geometry/projection_tree.h"
 #include "common/message_text.h"
+#include "tetwright/sheets.h"
 
 namespace tetwright {
 
@@ -112,6 +115,49 @@ void find_changed_solids(const TetMesh& mesh, PrepareRun& run) {
                                 .limited_by = dense_was_same ? "the number of tets"
                                               : thin.empty() ? "the size of the cells"
                                                              : "what is thin for the cells: " + thin,
+                                .places = places});
+}
+
+/// Text such as "an area of 3.2 instead of 4, 2 pieces instead of 1", or nothing.
+std::string sheet_difference(const SheetStatistics& is, const SheetStatistics& should) {
+  std::string text;
+  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  if (!is_same_volume(is.area, should.area))
+    add("an area of " + short_number(is.area) + " instead of " + short_number(should.area));
+  if (is.pieces != should.pieces)
+    add(std::to_string(is.pieces) + (is.pieces == 1 ? " piece" : " pieces") + " instead of " +
+        std::to_string(should.pieces));
+  else if (is.euler != should.euler)
+    add("the Euler characteristic " + std::to_string(is.euler) + " instead of " +
+        std::to_string(should.euler));
+  return text;
+}
+
+/// Reports sheets that differ from those of the input.
+void find_changed_sheets(const TetMesh& mesh, PrepareRun& run) {
+  PrepareReport& report = run.report;
+  if (!report.mesher || report.mesher->sheets.empty()) return;
+  const std::vector<SheetStatistics> found = sheet_statistics(mesh);
+  std::string text;
+  std::vector<Vec3> places;
+  for (const ExpectedSheet& e : report.mesher->sheets) {
+    const auto is = std::find_if(found.begin(), found.end(),
+                                 [&](const SheetStatistics& s) { return s.name == e.shape.name; });
+    const std::string difference = sheet_difference(is == found.end() ? SheetStatistics{} : *is, e.shape);
+    if (difference.empty()) continue;
+    text += (text.empty() ? "" : "; ") + ("'" + e.shape.name + "' has ") + difference + ", it is at " +
+            place_text(e.place);
+    places.push_back(e.place);
+  }
+  if (text.empty()) return;
+  const std::size_t all = report.mesher->sheets.size();
+  report.diagnostics.push_back({.code = DiagnosticCode::sheets_changed,
+                                .file = report.inputs.front(),
+                                .what = "not the sheets of the input: " + text,
+                                .remedy = "raise --resolution, or accept it with --accept-changes",
+                                .asked = static_cast<double>(all),
+                                .reached = static_cast<double>(all - places.size()),
+                                .limited_by = "the size of the cells",
                                 .places = places});
 }
 
@@ -291,12 +337,49 @@ void find_small_parts(PrepareReport& report) {
   for (const ThinPartReport& t : report.mesher->thin_parts) find_thin_part(t, report);
 }
 
+/// Max distance of points on the boundary beside sheets, as a share of the diagonal: that of creases
+/// (crease_comparison.cpp).
+constexpr double max_boundary_share = 0.005;
+
 }  // namespace
+
+void find_moved_boundary(const TetMesh& mesh, const TriangleMesh& surface, PrepareRun& run) {
+  if (!run.report.mesher || run.report.mesher->sheets.empty()) return;
+  std::vector<ProjectionTree::Item> items;
+  Box3 box;
+  for (const Triangle& t : surface.triangles) {
+    items.push_back({t, {}});
+    for (const Index p : t) box.add(surface.points[p]);
+  }
+  const ProjectionTree tree(surface.points, std::move(items));
+  const double diagonal = (box.high - box.low).norm();
+  double worst = 0;
+  Vec3 place = Vec3::Zero();
+  for (const InterfaceTriangle& t : mesh.interfaces) {
+    if (t.is_sheet() || (t.material == outside_tag && !t.other)) continue;
+    for (const Index p : t.ids)
+      if (const auto foot = tree.nearest(mesh.points[p], {}, diagonal))
+        if (const double distance = (*foot - mesh.points[p]).norm(); distance > worst)
+          worst = distance, place = mesh.points[p];
+  }
+  if (worst <= max_boundary_share * diagonal) return;
+  run.report.diagnostics.push_back(
+      {.code = DiagnosticCode::sheets_changed,
+       .file = run.report.inputs.front(),
+       .what = "not the surface of the input: beside sheets it is off by up to " + short_number(worst) +
+               " (" + short_number(100 * worst / diagonal) + " % of the diagonal) at " + place_text(place),
+       .remedy = "change --resolution or --target-tets a little, or accept it with --accept-changes",
+       .asked = 0,
+       .reached = worst,
+       .limited_by = "the shapes of tets where sheets meet the boundary",
+       .places = {place}});
+}
 
 void find_input_changes(const TetMesh& mesh, PrepareRun& run) {
   find_lost_labels(run);
   find_changed_solids(mesh, run);
   find_uncertain_changes(run.report);
+  find_changed_sheets(mesh, run);
   find_thin_walls(run);
   find_changed_creases(mesh, run);
   find_lost_patches(mesh, run);

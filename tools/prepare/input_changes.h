@@ -6,10 +6,15 @@
 
 namespace tetwright {
 
-/// Compares the result with the input: labels, solids, thin walls, creases and patches. Adds diagnostics to
-/// `run.report`.
+/// Compares the result with the input: labels, solids, sheets, thin walls, creases and patches. Adds
+/// diagnostics to `run.report`.
 ///
 /// \pre `mesh` has its interfaces.
 void find_input_changes(const TetMesh& mesh, PrepareRun& run);
+
+/// Reports a boundary that is off where bodies have sheets: points on curves in which a sheet meets the
+/// boundary may stop short of it, and simplification may then move others. Does nothing without sheets.
+/// \param surface of the input, as meshed
+void find_moved_boundary(const TetMesh& mesh, const TriangleMesh& surface, PrepareRun& run);
 
 }  // namespace tetwright

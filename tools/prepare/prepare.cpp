@@ -9,6 +9,7 @@
 #include "tetwright/mesh_quality.h"
 #include "tetwright/prepare_steps.h"
 #include "tetwright/simplify.h"
+#include "tools/prepare/input_changes.h"
 
 namespace tetwright {
 
@@ -44,6 +45,7 @@ Prepared mesh_from_scans(std::vector<Input> inputs, PrepareRun& run) {
   SurfaceToFollow surface = follow(*dense.reference);
   if (run.options.order >= 2) follow_sheets(surface, dense.mesh);
   result.mesh = simplify_to_target(std::move(dense.mesh), dense.reference.get(), dense.surface.get(), run);
+  if (dense.surface) find_moved_boundary(result.mesh, *dense.surface, run);
   make_second_order(result.mesh, surface, run);
   dense.reference.reset();  // frees memory for comparing and writing the mesh
   if (dense.surface && run.options.keep.reference) {

@@ -60,6 +60,9 @@ bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
           "input is one");
     return false;
   }
+  if (std::any_of(inputs.begin(), inputs.end(),
+                  [](const Input& input) { return input.role != Input::Role::body; }))
+    throw UsageError("--sheet and --partition are for surfaces, and the input is a segmented volume");
   if (inputs.size() > 1 || !inputs.front().material.empty())
     throw UsageError("a segmented volume must be the only input; leave out the others");
   const CellOptions& cells = options.cells;
@@ -155,7 +158,9 @@ void name_solids(std::vector<SplitFile> files, const std::vector<Layer>& layers,
 
 /// Reads one material for each surface and level set, or with --split-solids for each solid of a surface.
 /// Tags start at 1, in the order of the inputs.
-std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs, PrepareRun& run) {
+/// \param sheets receives the inputs that are sheets or partitions
+std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs,
+                                                    std::vector<SheetSurface>& sheets, PrepareRun& run) {
   PrepareReport& report = run.report;
   const bool split_solids_asked = run.options.bodies.split_solids;
   std::vector<MaterialSurface> surfaces;
@@ -176,7 +181,9 @@ std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs, 
   std::vector<SplitFile> split;
   for (Input& input : inputs) {
     const std::string& file = input.name;
-    if (!input.material.empty()) {
+    if (input.role != Input::Role::body) {
+      sheets.push_back({input.material, read(input), file, input.role == Input::Role::partition});
+    } else if (!input.material.empty()) {
       add(input.material, file, input.is_vdb_file() ? count(read_one_level_set(input)) : read(input));
     } else if (input.is_vdb_file()) {
       for (NamedSurface& s : read_level_sets(file))
@@ -205,9 +212,18 @@ std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs, 
   return surfaces;
 }
 
+/// Diagonal of the bounding box of all surfaces.
+double diagonal_of(const std::vector<MaterialSurface>& surfaces) {
+  Eigen::AlignedBox3d box;
+  for (const MaterialSurface& s : surfaces)
+    for (const Vec3& p : s.surface.points) box.extend(p);
+  return box.isEmpty() ? 0 : box.diagonal().norm();
+}
+
 MesherInput read_surfaces(std::vector<Input>& inputs, PrepareRun& run) {
   const BodyOptions& options = run.options.bodies;
-  std::vector<MaterialSurface> surfaces = read_material_surfaces(inputs, run);
+  SheetOptions sheets;
+  std::vector<MaterialSurface> surfaces = read_material_surfaces(inputs, sheets.surfaces, run);
   std::vector<MaterialLayer> layers;
   for (const Layer& l : options.layers)
     layers.push_back({l.name, static_cast<MaterialTag>(surfaces.size() + layers.size() + 1), l.thickness});
@@ -218,8 +234,9 @@ MesherInput read_surfaces(std::vector<Input>& inputs, PrepareRun& run) {
     contact.relative_tolerance = options.contact_tolerance->value / 100;
   else if (options.contact_tolerance)
     contact.tolerance = options.contact_tolerance->value;
+  if (options.extend) sheets.extend = options.extend->in_input_units(diagonal_of(surfaces));
   MesherInput input = make_mesher_input(std::move(surfaces), std::move(layers), options.nested, contact,
-                                        options.regions, &run.progress);
+                                        options.regions, &run.progress, std::move(sheets));
   std::vector<Diagnostic>& all = run.report.diagnostics;
   all.insert(all.end(), input.findings.begin(), input.findings.end());
   run.report.patches = patches_of_input(input);

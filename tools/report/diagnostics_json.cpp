@@ -24,6 +24,8 @@ const char* request_name(DiagnosticCode code) {
       return "size_field";
     case DiagnosticCode::solid_changed:
       return "fidelity";
+    case DiagnosticCode::sheets_changed:
+      return "sheets";
     case DiagnosticCode::thin_walls_changed:
       return "thin_walls";
     case DiagnosticCode::creases_changed:

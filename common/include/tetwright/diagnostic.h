@@ -31,6 +31,7 @@ enum class DiagnosticCode : std::uint8_t {
   edges_too_short,
   sizes_missed,
   solid_changed,
+  sheets_changed,
   thin_walls_changed,
   creases_changed,
   patches_lost,
@@ -74,6 +75,9 @@ enum class DiagnosticCode : std::uint8_t {
   names_qualified,
   bodies_overlap,
   bodies_not_joined,
+  sheet_cut_off,
+  sheet_on_faces,
+  partition_ends,
   // Segmented volumes.
   no_outside,
   islands_merged,

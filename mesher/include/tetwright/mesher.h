@@ -11,6 +11,7 @@
 #include "tetwright/mesh_quality.h"
 #include "tetwright/mesher_input.h"
 #include "tetwright/progress.h"
+#include "tetwright/sheets.h"
 #include "tetwright/sizes.h"
 #include "tetwright/surface_mesh.h"
 #include "tetwright/tet_mesh.h"
@@ -94,6 +95,13 @@ struct ExpectedSolid {
   double volume_slack = 0;
 };
 
+/// A sheet inside bodies, without its parts that are in none.
+struct ExpectedSheet {
+  SheetStatistics shape;  ///< without the number of triangles
+  std::string file;
+  Vec3 place = Vec3::Zero();  ///< the centre of its largest triangle, input units
+};
+
 /// Expected size of a mesh, and memory needed to make it.
 struct MesherEstimate {
   std::size_t tets = 0;   ///< of the dense mesh
@@ -124,6 +132,7 @@ struct MesherReport {
   /// Materials whose expected solid cannot be determined: the surfaces have a flaw, and cells were refined or
   /// all of the solid is smaller than a cell.
   std::vector<std::string> unknown;
+  std::vector<ExpectedSheet> sheets;    ///< inside bodies, as MesherInput::sheets
   std::vector<FeatureReport> features;  ///< of each surface, in their order
   CreaseCurves creases;                 ///< creases of all surfaces
   bool out_of_time = false;             ///< a deadline ended the search for small enough cells

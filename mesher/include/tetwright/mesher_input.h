@@ -169,6 +169,24 @@ struct RegionOptions {
   std::vector<RegionSeed> seeds = {};
 };
 
+/// An open surface inside bodies.
+struct SheetSurface {
+  std::string name;
+  TriangleMesh surface;  ///< any number of sheets; with named groups, these name the sheets
+  std::string file;      ///< for messages
+  /// True: it cuts bodies into cells, each a material. False: its triangles become faces of the mesh between
+  /// tets of one material.
+  bool divides = false;
+};
+
+/// Open surfaces inside bodies, such as baffles, membranes, faults and horizons.
+struct SheetOptions {
+  std::vector<SheetSurface> surfaces = {};
+  /// Borders of dividing sheets that end before the boundary of a body are extended by at most this, input
+  /// units; 0: not at all.
+  double extend = 0;
+};
+
 /// Faces that two bodies share.
 struct ContactReport {
   std::string first, second;   ///< materials, in the order of the bodies
@@ -205,6 +223,11 @@ struct MesherInput {
   };
   std::vector<Body> bodies;           ///< later bodies carve earlier ones
   std::vector<MaterialLayer> layers;  ///< of the first body, outermost first
+  /// A named sheet inside bodies, see LabelledComplex::SheetFace.
+  struct Sheet {
+    SurfaceRegion group;
+    std::string file;
+  };
   std::vector<Diagnostic> findings;
   std::vector<Group> groups;  ///< groups with triangles, ascending; repair may remove all of one
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< bounding box of all bodies, input units
@@ -212,6 +235,7 @@ struct MesherInput {
   std::shared_ptr<const LabelledComplex> complex = {};
   std::vector<ContactReport> contacts = {};  ///< by pair of bodies
   std::vector<OverlapReport> overlaps = {};
+  std::vector<Sheet> sheets = {};
 };
 
 /// The reason why surfaces do not define the solid of a material with certainty: a flaw of its own surface or
@@ -237,18 +261,21 @@ enum class SurfaceFlaw : std::uint8_t {
 ///
 /// Closed bodies that meet are then joined (ContactOptions): their surfaces are cut along the curves in which
 /// they meet, and within the tolerance moved onto each other. With OverlapRule::material their common volumes
-/// are appended as bodies with the smallest free tags from 1 up.
+/// are appended as bodies with the smallest free tags from 1 up. Sheets become faces of the complex; their
+/// parts that are in no body, or on the boundary of one, are reported.
 ///
 /// \param progress may be null
 /// \pre non-empty names differ, and so do tags
 /// \throws InputError as repair_surface() does; for surfaces that cannot be joined, bodies that cross with
-///   OverlapRule::error; for coordinates too large or a size too small for areas and
-///   volumes in double precision
-/// \throws UsageError for no surface, two materials of one name or tag, a layer whose thickness is not above
-///   0, more than 60,000 materials, or a seed that is in no cell or whose cell another one names
+///   OverlapRule::error; for sheets and partitions that are closed, meet others or are in no body; for
+///   coordinates too large or a size too small for areas and volumes in double precision
+/// \throws UsageError for no surface, sheets together with layers, two materials of one name or tag, a layer
+///   whose thickness is not above 0, more than 60,000 materials, or a seed that is in no cell or whose cell
+///   another one names
 MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers = {},
                               NestedRule nested = NestedRule::automatic, const ContactOptions& contact = {},
-                              const RegionOptions& regions = {}, Progress* progress = nullptr);
+                              const RegionOptions& regions = {}, Progress* progress = nullptr,
+                              SheetOptions sheets = {});
 
 /// The longest side of the bounding box, input units.
 double longest_side(const MesherInput& input);

@@ -88,6 +88,49 @@ TEST(Sheets, LostInAnotherMeshAreADifferentTopology) {
       << a.out;
 }
 
+constexpr const char* box_off =
+    "OFF\n8 6 0\n0 0 0\n2 0 0\n2 1 0\n0 1 0\n0 0 1\n2 0 1\n2 1 1\n0 1 1\n"
+    "4 0 3 2 1\n4 4 5 6 7\n4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
+constexpr const char* baffle_off =
+    "OFF\n4 1 0\n0.8 0.2 0.2\n1.3 0.5 0.2\n1.3 0.5 0.7\n0.8 0.2 0.7\n4 0 1 2 3\n";
+
+TEST(Sheets, AreMadeFromOpenSurfaces) {
+  const TemporaryFolder f;
+  put(f / "box.off", box_off);
+  put(f / "baffle.off", baffle_off);
+  const Answer a = run("prepare " + (f / "box.off") + " --sheet baffle=" + (f / "baffle.off") + " -o " +
+                       (f / "a.vtu") + " --target-tets 1500 --strict");
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_NE(a.out.find("sheet \"baffle\": "), std::string::npos) << a.out;
+  const nlohmann::json sheet = checked(f / "a.vtu").at("mesh").at("sheets").at(0);
+  EXPECT_EQ(sheet.at("name"), "baffle");
+  EXPECT_NEAR(sheet.at("area"), std::hypot(0.5, 0.3) * 0.5, 1e-6);
+  EXPECT_NEAR(sheet.at("border_length"), 2 * (std::hypot(0.5, 0.3) + 0.5), 1e-6);
+  EXPECT_EQ(sheet.at("pieces"), 1);
+}
+
+TEST(Sheets, AndPartitionsNeedSurfaces) {
+  const TemporaryFolder f;
+  put(f / "box.off", box_off);
+  const std::string call = "mesh " + (f / "box.off") + " -o " + (f / "a.vtu");
+  expect_refused(call + " --sheet baffle", 2, {"--sheet", "NAME=FILE"});
+  expect_refused(call + " --sheet baffle=" + (f / "none.off"), 3, {"none.off"});
+  expect_refused(call + " --partition level=" + (f / "none.off"), 3, {"none.off"});
+}
+
+TEST(Sheets, PartitionsMakeNamedMaterials) {
+  const TemporaryFolder f;
+  put(f / "box.off", box_off);
+  put(f / "level.off", "OFF\n4 1 0\n-1 -1 0.4\n3 -1 0.6\n3 2 0.6\n-1 2 0.4\n4 0 1 2 3\n");
+  const Answer a = run("prepare " + (f / "box.off") + " --partition level=" + (f / "level.off") +
+                       " --region water@1,0.5,0.1 -o " + (f / "a.vtu") + " --target-tets 1500");
+  EXPECT_EQ(a.status, 0) << a.err;
+  const TetMesh mesh = read_tet_mesh(f / "a.vtu").mesh;
+  ASSERT_EQ(mesh.material_names.size(), 2U);
+  EXPECT_EQ(mesh.material_names.begin()->second, "box_1");
+  EXPECT_EQ(mesh.material_names.rbegin()->second, "water");
+}
+
 TEST(Sheets, ShowOnTheReportPage) {
   const TemporaryFolder f;
   write_box(f / "box.msh");

@@ -21,7 +21,8 @@ void write_stats(const CommandRun& run, OutputFiles& files) {
 std::vector<std::string> input_files(const CommandLine& line) {
   if (line.command == Command::sample) return {};
   std::vector<std::string> inputs = line.inputs;
-  for (const NamedValue& m : line.materials) inputs.push_back(m.value);
+  for (const std::vector<NamedValue>* named : {&line.materials, &line.sheets, &line.partitions})
+    for (const NamedValue& m : *named) inputs.push_back(m.value);
   return inputs;
 }
 

@@ -33,6 +33,10 @@ std::vector<Input> inputs_of(const CommandLine& line, NamedInputs* in_memory) {
   for (const std::string& name : line.inputs) inputs.push_back(input_named(name, line, in_memory));
   for (const NamedValue& m : line.materials)
     inputs.push_back(input_named(m.value, line, in_memory).as(m.name));
+  for (const NamedValue& s : line.sheets)
+    inputs.push_back(input_named(s.value, line, in_memory).as_sheet(s.name));
+  for (const NamedValue& p : line.partitions)
+    inputs.push_back(input_named(p.value, line, in_memory).as_partition(p.name));
   return inputs;
 }
 

@@ -31,7 +31,7 @@ struct NamedInputs {
 /// \param in_memory may be null
 Input input_named(const std::string& name, const CommandLine& line, NamedInputs* in_memory);
 
-/// Positional inputs, followed by those of --material.
+/// Positional inputs, followed by those of --material, --sheet and --partition.
 std::vector<Input> inputs_of(const CommandLine& line, NamedInputs* in_memory);
 
 /// Makes a size field in memory the source of sizes in `options`.

@@ -31,8 +31,8 @@ def arguments_of(command: str, names: list[bytes], options: dict[str, Any], inpu
     return arguments + [b"--", *names]
 
 
-def materials_of(value: Any) -> list[tuple[str, Any]]:
-    """Returns names and inputs of the option `material`, given as a dict, a list of pairs, or strings NAME=FILE."""
+def materials_of(value: Any, key: str = "material") -> list[tuple[str, Any]]:
+    """Returns names and inputs of the option `material`, `sheet` or `partition`, given as a dict, a list of pairs, or strings NAME=FILE."""
     if value is None:
         return []
     if isinstance(value, list) and all(isinstance(v, tuple) and len(v) == 2 and isinstance(v[0], str) for v in value):
@@ -42,7 +42,7 @@ def materials_of(value: Any) -> list[tuple[str, Any]]:
     if isinstance(value, str):
         value = [value]
     if not isinstance(value, list) or not all(isinstance(v, str) and "=" in v for v in value):
-        raise _core.UsageError(f"material is a {type(value).__name__}; give a dict from names of materials to surfaces")
+        raise _core.UsageError(f"{key} is a {type(value).__name__}; give a dict from names to surfaces")
     return [tuple(v.split("=", 1)) for v in value]  # type: ignore[misc]
 
 
@@ -56,8 +56,9 @@ def _texts(key: str, kind: str, value: Any, inputs: Inputs) -> Iterable[bytes]:
     """Returns the values of an option; there may be several if the option can be repeated."""
     if key == "size_field":
         return [inputs.add_sizes(value)]
-    if key == "material":
-        return [_name(key, name) + b"=" + inputs.add(item, name, made_up=False) for name, item in materials_of(value)]
+    if key in ("material", "sheet", "partition"):
+        return [_name(key, name) + b"=" + inputs.add(item, name, made_up=False)
+                for name, item in materials_of(value, key)]
     if key == "layer" and isinstance(value, dict):
         return [_name(key, str(name)) + b"=" + _number(key, item) for name, item in value.items()]
     if key == "labels" and not isinstance(value, str):

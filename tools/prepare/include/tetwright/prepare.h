@@ -65,6 +65,17 @@ struct Input {
     material = std::move(material_name);
     return std::move(*this);
   }
+  /// Makes the input an open surface inside the bodies of the other inputs, whose faces the mesh has under
+  /// this name (SheetSurface).
+  Input as_sheet(std::string sheet_name) && {
+    role = Role::sheet;
+    return std::move(*this).as(std::move(sheet_name));
+  }
+  /// Makes the input an open surface that cuts the bodies of the other inputs into materials.
+  Input as_partition(std::string sheet_name) && {
+    role = Role::partition;
+    return std::move(*this).as(std::move(sheet_name));
+  }
 
   bool is_value() const {
     return !std::holds_alternative<InputFile>(value) && !std::holds_alternative<InputStream>(value);
@@ -80,7 +91,9 @@ struct Input {
 
   std::string name;  ///< name of the input in messages; the path of a file
   Value value = InputFile{};
-  std::string material;  ///< empty: the name of the input
+  std::string material;  ///< or the name of a sheet; empty: the name of the input
+  enum class Role : std::uint8_t { body, sheet, partition };
+  Role role = Role::body;
 };
 
 /// Reads or moves out the value of an input; files are read by the readers of io.h.
@@ -140,6 +153,8 @@ struct BodyOptions {
   std::optional<Length> contact_tolerance;
   OverlapRule overlap = OverlapRule::later;
   RegionOptions regions;  ///< of surfaces that inner walls divide
+  /// Borders of Input::as_partition() that end before the boundary of a body are extended by at most this.
+  std::optional<Length> extend;
   /// True: each solid, group or label of a surface's triangles becomes a material of that name instead of a
   /// patch.
   bool split_solids = false;

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mesher/cut/cutting.h"
+#include "mesher/distance/sheeted_field.h"
+#include "tetwright/tet_mesh.h"
+
+namespace tetwright {
+
+/// The faces between two parts of a region that are on opposite sides of a sheet, also where the sheet is
+/// continued beyond its border. Their material is that on both sides, the normal points to the front of the
+/// sheet, and the patch is the number of the sheet's component.
+/// \param candidates by point: 0 for points without such faces
+std::vector<InterfaceTriangle> sheet_faces(const CutMesh& mesh, const SheetedField& field,
+                                           const std::vector<std::uint8_t>& candidates);
+
+/// The regions of the field without sheets.
+std::vector<RegionIndex> regions_without_sheets(const std::vector<RegionIndex>& regions,
+                                                const SheetedField& field);
+
+/// By point: 1 if it is on the boundary of a region of the field without sheets.
+std::vector<std::uint8_t> on_interfaces_without_sheets(const CutMesh& mesh, const SheetedField& field);
+
+}  // namespace tetwright
