@@ -179,21 +179,29 @@ ContactZone::Nearest ContactZone::nearest(const Vec3& point) const {
           away_from(from_nearest, std::sqrt(squared_distance), in_front ? f.normal : Vec3(-f.normal))};
 }
 
-std::optional<ContactZone::Narrow> ContactZone::narrow(const Vec3& point, const Nearest& at) const {
-  const Face* farther = nullptr;
+template <class Accepts>
+std::pair<const ContactZone::Face*, Vec3> ContactZone::nearest_face(const Vec3& point, double limit,
+                                                                    const Accepts& accepts) const {
+  const Face* nearest = nullptr;
   Vec3 away = Vec3::Zero();
-  const double limit = Zone::widest_narrow - at.distance.value;
-  if (!(limit > 0)) return {};
   tree_.nearest(point, limit * limit, tree_.all(), [&](std::size_t i, double best) {
     const Face& f = faces_[i];
-    if (!f.bounds(at.region) || f.across(at.region) == at.across) return best;
+    if (!accepts(f)) return best;
     const Vec3 d = point - closest_point(point, f.corners[0], f.corners[1], f.corners[2]);
     const double squared = d.squaredNorm();
     if (squared >= best) return best;
-    farther = &f;
+    nearest = &f;
     away = d;
     return squared;
   });
+  return {nearest, away};
+}
+
+std::optional<ContactZone::Narrow> ContactZone::narrow(const Vec3& point, const Nearest& at) const {
+  const double limit = Zone::widest_narrow - at.distance.value;
+  if (!(limit > 0)) return {};
+  const auto [farther, away] = nearest_face(
+      point, limit, [&](const Face& f) { return f.bounds(at.region) && f.across(at.region) != at.across; });
   if (!farther) return {};
   const Distance distance =
       away_from(away, away.norm(), farther->front == at.region ? farther->normal : Vec3(-farther->normal));
@@ -212,19 +220,8 @@ std::optional<ContactZone::Narrow> ContactZone::narrow(const Vec3& point, const 
 }
 
 std::optional<ContactZone::Distance> ContactZone::distance(const Vec3& point, RegionIndex region) const {
-  const Face* nearest = nullptr;
-  Vec3 away = Vec3::Zero();
-  const double limit = Zone::reach * Zone::reach;
-  tree_.nearest(point, limit, tree_.all(), [&](std::size_t i, double best) {
-    const Face& f = faces_[i];
-    if (f.behind != region && f.front != region) return best;
-    const Vec3 d = point - closest_point(point, f.corners[0], f.corners[1], f.corners[2]);
-    const double squared = d.squaredNorm();
-    if (squared >= best) return best;
-    nearest = &f;
-    away = d;
-    return squared;
-  });
+  const auto [nearest, away] =
+      nearest_face(point, Zone::reach, [&](const Face& f) { return f.bounds(region); });
   if (!nearest) return {};
   return away_from(away, away.norm(), nearest->front == region ? Vec3(-nearest->normal) : nearest->normal);
 }

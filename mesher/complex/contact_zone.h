@@ -73,6 +73,10 @@ class ContactZone {
                      const std::array<int, 3>& cells);
   void add_narrow_parts(const std::array<int, 3>& cells);
   bool faces_another_pair(const Face& face) const;
+  /// The nearest face within `limit` for which `accepts(face)` holds, or null, and the vector from it to the
+  /// point.
+  template <class Accepts>
+  std::pair<const Face*, Vec3> nearest_face(const Vec3& point, double limit, const Accepts& accepts) const;
   void add(const std::vector<std::uint64_t>& keys);
 
   BoxTree tree_;

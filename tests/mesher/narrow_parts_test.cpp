@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Bodies that touch in points and lines: what lies between them is thinner than any cell.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <map>
+#include <set>
+#include <vector>
+
+#include "tests/common/features/parts.h"
+#include "tests/mesher/test_surfaces.h"
+#include "tetwright/mesher.h"
+#include "tetwright/mesher_input.h"
+
+namespace tetwright::narrow_parts_test {
+namespace {
+
+TriangleMesh moved(TriangleMesh mesh, const Vec3& by) {
+  const auto turn = Eigen::AngleAxisd(0.6, Vec3(1, 2, 3).normalized());
+  for (Vec3& p : mesh.points) p = turn * (p + by);
+  return mesh;
+}
+
+TetMesh mesh_of(const std::vector<TriangleMesh>& bodies, int resolution) {
+  std::vector<MaterialSurface> surfaces;
+  for (const TriangleMesh& body : bodies) {
+    const auto tag = static_cast<MaterialTag>(surfaces.size() + 1);
+    surfaces.push_back({"body" + std::to_string(tag), tag, body, "body.off"});
+  }
+  MesherOptions options;
+  options.resolution = resolution;
+  return mesh_surfaces(make_mesher_input(std::move(surfaces)), options, nullptr).mesh;
+}
+
+/// Points minus edges plus triangles of the faces for which `accepts` holds: 1 for a disc, 2 for a sphere.
+template <class Accepts>
+long euler_number(const TetMesh& mesh, const Accepts& accepts) {
+  std::set<Index> points;
+  std::set<std::array<Index, 2>> edges;
+  long triangles = 0;
+  for (const InterfaceTriangle& t : mesh.interfaces) {
+    if (!accepts(t)) continue;
+    ++triangles;
+    for (std::size_t k = 0; k < 3; ++k) {
+      points.insert(t.ids[k]);
+      edges.insert(ascending_edge(t.ids[k], t.ids[(k + 1) % 3]));
+    }
+  }
+  return static_cast<long>(points.size()) - static_cast<long>(edges.size()) + triangles;
+}
+
+TEST(NarrowParts, ABallOnAPlateHasOneDiscOfContact) {
+  for (const int resolution : {16, 24, 40}) {
+    const TetMesh mesh = mesh_of(
+        {moved(unit_cube(), Vec3::Zero()), moved(make_sphere(0.45), Vec3(0.5, 0.45, 1.45))}, resolution);
+    EXPECT_EQ(euler_number(mesh, [](const InterfaceTriangle& t) { return t.other.has_value(); }), 1)
+        << resolution;
+    EXPECT_EQ(euler_number(mesh, [](const InterfaceTriangle& t) { return !t.other; }), 2) << resolution;
+  }
+}
+
+TEST(NarrowParts, BodiesAroundALineTouchOnlyThoseBesideThem) {
+  std::vector<TriangleMesh> cubes;
+  for (const int k : {0, 1, 2, 3}) cubes.push_back(moved(unit_cube(), Vec3(k & 1, k >> 1, 0)));
+  for (const int resolution : {16, 24}) {
+    const TetMesh mesh = mesh_of(cubes, resolution);
+    std::set<MaterialPair> pairs;
+    for (const InterfaceTriangle& t : mesh.interfaces)
+      if (t.other) pairs.insert(t.pair());
+    EXPECT_EQ(pairs, (std::set<MaterialPair>{{1, 2}, {1, 3}, {2, 4}, {3, 4}})) << resolution;
+    std::map<MaterialTag, double> volumes;
+    for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+      const auto& [a, b, c, d] = mesh.tets[t];
+      const Vec3& o = mesh.points[a];
+      volumes[mesh.materials[t]] +=
+          (mesh.points[b] - o).cross(mesh.points[c] - o).dot(mesh.points[d] - o) / 6;
+    }
+    for (const auto& [tag, volume] : volumes) EXPECT_NEAR(volume, 1, 1e-6) << tag << " at " << resolution;
+  }
+}
+
+}  // namespace
+}  // namespace tetwright::narrow_parts_test
