@@ -166,6 +166,7 @@ std::vector<SheetStatistics> sheet_statistics(const TetMesh& mesh) {
     sheets[{group, name}].push_back(t.ids);
   }
   std::vector<SheetStatistics> out;
+  out.reserve(sheets.size());
   for (const auto& [key, triangles] : sheets) out.push_back(statistics_of(mesh, key.second, triangles));
   return out;
 }

@@ -114,6 +114,7 @@ class StripCollapse {
           edges.insert({(at(e[0]) - at(e[1])).norm(), e});
       }
     std::vector<std::array<Index, 2>> sorted;
+    sorted.reserve(edges.size());
     for (const auto& [length, e] : edges) sorted.push_back(e);
     return sorted;
   }

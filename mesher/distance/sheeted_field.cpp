@@ -65,6 +65,7 @@ Slope distance_to(const SheetSides& there, const SheetSides& here, const std::ve
 
 std::vector<FieldRegion> regions_of(const MaterialField& base, const std::vector<SheetedField::Part>& parts) {
   std::vector<FieldRegion> regions;
+  regions.reserve(parts.size());
   for (const SheetedField::Part& part : parts) regions.push_back(base.regions()[part.region]);
   return regions;
 }
@@ -180,6 +181,7 @@ std::shared_ptr<const SheetedField> SheetedField::of_points(std::shared_ptr<cons
                                    }
                                  });
   std::vector<Part> parts;
+  parts.reserve(labelled.size());
   for (const Labelled& l : labelled) parts.push_back(l.part);
   std::sort(parts.begin(), parts.end());
   parts.erase(std::unique(parts.begin(), parts.end()), parts.end());

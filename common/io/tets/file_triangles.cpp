@@ -126,9 +126,10 @@ class TriangleTaker {
     const std::size_t boundary = interfaces_.size() - between_materials;
     const std::size_t sides = 4 * mesh.tets.size();
     if (sides < boundary + 2 * between_materials) return;  // the mesh is not valid
-    const auto inner = static_cast<double>((sides - boundary) / 2 - between_materials);
+    const std::size_t inner = (sides - boundary) / 2 - between_materials;
     for (auto sheet = sheets_.begin(); sheet != sheets_.end();) {
-      if (static_cast<double>(sheet->second.size()) > max_sheet_share * inner && sheet->second.size() > 1) {
+      if (static_cast<double>(sheet->second.size()) > max_sheet_share * static_cast<double>(inner) &&
+          sheet->second.size() > 1) {
         inside_groups_ += sheet->second.size();
         sheet = sheets_.erase(sheet);
       } else {
