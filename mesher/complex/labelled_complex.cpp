@@ -309,7 +309,6 @@ class ComplexBuilder {
       out.starts_.push_back(out.sources_.size());
       for (const RegionIndex r : {behind, front})
         if (r != outside_region) result_.lost[r - 1u] = 0;
-      out.has_contacts_ |= out.is_contact(static_cast<Index>(out.faces.size() - 1));
     }
     find_contacts();
     std::vector<Triangle> triangles;

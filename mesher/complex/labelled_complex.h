@@ -53,15 +53,12 @@ class LabelledComplex {
   /// Edges, ascending, with other than two faces, or with faces of different pairs of regions; also those at
   /// which a sheet meets a face.
   const std::vector<std::array<Index, 2>>& junctions() const { return junctions_; }
-  /// True if there is a contact, a junction or a sheet.
-  bool any() const { return !junctions_.empty() || has_contacts_ || !sheets.empty(); }
 
  private:
   friend class ComplexBuilder;
   std::vector<Source> sources_;
   std::vector<std::size_t> starts_;
   std::vector<std::array<Index, 2>> junctions_;
-  bool has_contacts_ = false;
 };
 
 /// Two bodies that cross: neither contains the other.
