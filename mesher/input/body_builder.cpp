@@ -105,6 +105,7 @@ void order_from_top(std::vector<SurfaceCell>& cells) {
   }
   std::sort(order.begin(), order.end());
   std::vector<SurfaceCell> sorted;
+  sorted.reserve(order.size());
   for (const auto& [key, k] : order) sorted.push_back(std::move(cells[k]));
   cells = std::move(sorted);
 }

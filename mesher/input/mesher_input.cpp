@@ -121,7 +121,7 @@ double largest_coordinate(const MesherInput& input) {
 
 MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers,
                               NestedRule nested, const ContactOptions& contact, const RegionOptions& regions,
-                              Progress* progress, SheetOptions sheets) {
+                              Progress* progress, const SheetOptions& sheets) {
   if (surfaces.empty()) throw UsageError("there is no surface to mesh");
   MesherInput input;
   name_groups(surfaces, input.findings);

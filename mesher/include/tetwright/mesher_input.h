@@ -275,7 +275,7 @@ enum class SurfaceFlaw : std::uint8_t {
 MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers = {},
                               NestedRule nested = NestedRule::automatic, const ContactOptions& contact = {},
                               const RegionOptions& regions = {}, Progress* progress = nullptr,
-                              SheetOptions sheets = {});
+                              const SheetOptions& sheets = {});
 
 /// The longest side of the bounding box, input units.
 double longest_side(const MesherInput& input);
