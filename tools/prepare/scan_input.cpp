@@ -236,7 +236,7 @@ MesherInput read_surfaces(std::vector<Input>& inputs, PrepareRun& run) {
     contact.tolerance = options.contact_tolerance->value;
   if (options.extend) sheets.extend = options.extend->in_input_units(diagonal_of(surfaces));
   MesherInput input = make_mesher_input(std::move(surfaces), std::move(layers), options.nested, contact,
-                                        options.regions, &run.progress, std::move(sheets));
+                                        options.regions, &run.progress, sheets);
   std::vector<Diagnostic>& all = run.report.diagnostics;
   all.insert(all.end(), input.findings.begin(), input.findings.end());
   run.report.patches = patches_of_input(input);
