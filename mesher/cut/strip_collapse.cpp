@@ -18,6 +18,7 @@ namespace tetwright {
 namespace {
 
 using Strips = CutTuning::Strips;
+using Labelling = CutTuning::Labelling;
 
 /// Edges of the complex at which faces of four or more pairs of regions meet.
 ProjectionTree branching_curves(const LabelledComplex& complex) {
@@ -192,17 +193,34 @@ class StripCollapse {
     return worst;
   }
 
-  /// Where the point that two become may lie, best first.
+  std::optional<Vec3> on_curve(const Vec3& p) const {
+    const auto hit =
+        curves_.nearest_of(p, Strips::curve_reach * cell_, [](const ProjectionTree::Item&) { return true; });
+    if (!hit) return {};
+    return hit->point;
+  }
+
+  /// Where the point that two become may lie.
   std::vector<Vec3> candidates(Index u, Index v) const {
     const Regions &a = regions_.at(u), &b = regions_.at(v);
     const Vec3 middle = (at(u) + at(v)) / 2;
+    const bool u_outside = a.contains(std::nullopt), v_outside = b.contains(std::nullopt);
+    std::vector<Vec3> places;
+    if (u_outside || v_outside) {
+      // Points of the boundary stay on it; the end of the curve is a corner.
+      if (const auto near = on_curve(at(u_outside ? u : v)))
+        if (const auto end = surface_.onto_corner(*near, Strips::curve_reach * cell_);
+            end && curves_.any_within(*end, Labelling::same_curve * cell_))
+          places.push_back(*end);
+      if (u_outside && v_outside) places.push_back(middle);
+      if (u_outside) places.push_back(at(u));
+      if (v_outside) places.push_back(at(v));
+      return places;
+    }
     if (contains(a, b) && contains(b, a)) return {at(u), at(v), middle};
     if (contains(a, b)) return {at(u), middle};
     if (contains(b, a)) return {at(v), middle};
-    std::vector<Vec3> places;
-    const auto on_curve = curves_.nearest_of(middle, Strips::curve_reach * cell_,
-                                             [](const ProjectionTree::Item&) { return true; });
-    if (on_curve) places.push_back(on_curve->point);
+    if (const auto near = on_curve(middle)) places.push_back(*near);
     places.insert(places.end(), {middle, at(u), at(v)});
     return places;
   }
