@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "mesher/cut/thin_wall_recovery.h"
-#include "mesher/distance/material_field.h"
+#include "mesher/domain/material_field.h"
 #include "mesher/domain/refinement_regions.h"
 #include "mesher/mesh_estimate.h"
 #include "tetwright/mesher.h"

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <array>
 
-#include "mesher/distance/material_field.h"
-#include "mesher/distance/vdb_writer.h"
+#include "mesher/domain/material_field.h"
+#include "mesher/level_sets/vdb_writer.h"
 #include "tetwright/mesher.h"
 
 namespace tetwright {

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesher/features/border_creases.h"
 #include "mesher/field_mesher.h"
-#include "mesher/labels/border_creases.h"
 #include "mesher/labels/label_field.h"
 #include "mesher/labels/label_thickness.h"
 #include "mesher/mesh_estimate.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mesher/cut/cutting.h"
-#include "mesher/distance/sheeted_field.h"
+#include "mesher/level_sets/sheeted_field.h"
 #include "tetwright/tet_mesh.h"
 
 namespace tetwright {

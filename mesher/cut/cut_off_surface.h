@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "common/geometry/projection_tree.h"
-#include "mesher/distance/material_field.h"
+#include "mesher/domain/material_field.h"
 #include "tetwright/surface_mesh.h"
 #include "tetwright/tet_mesh.h"
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mesher/cut/cutting.h"
-#include "mesher/distance/material_field.h"
+#include "mesher/domain/material_field.h"
 
 namespace tetwright {
 

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "mesher/distance/material_field.h"
+#include "mesher/domain/material_field.h"
 #include "mesher/lattice/labelled_lattice.h"
 #include "tetwright/progress.h"
 

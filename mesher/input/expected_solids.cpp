@@ -6,6 +6,7 @@
 #include "common/geometry/self_intersection.h"
 #include "common/geometry/surface_tree.h"
 #include "mesher/tuning/input_tuning.h"
+#include "tetwright/sheets.h"
 
 namespace tetwright {
 
@@ -122,6 +123,30 @@ std::vector<std::optional<SurfaceSolid>> expected_solids(const MesherInput& inpu
   for (std::size_t i = input.layers.empty() ? 0 : 1; i < input.bodies.size(); ++i)
     solids[i] = solid_of(input, i, own);
   return solids;
+}
+
+std::vector<ExpectedSheet> expected_sheets(const MesherInput& input) {
+  if (!input.complex || input.complex->sheets.empty()) return {};
+  const LabelledComplex& complex = *input.complex;
+  std::vector<ExpectedSheet> expected;
+  for (std::uint32_t k = 0; k < input.sheets.size(); ++k) {
+    TetMesh mesh{.points = complex.points};
+    ExpectedSheet sheet{.file = input.sheets[k].file};
+    mesh.patch_groups[{{1, 1}, 0}] = input.sheets[k].group;
+    double largest = -1;
+    for (const LabelledComplex::SheetFace& f : complex.sheets) {
+      if (f.sheet != k) continue;
+      mesh.interfaces.push_back({f.ids, 1, 1});
+      const auto& [a, b, c] = f.ids;
+      const Vec3 &p = mesh.points[a], &q = mesh.points[b], &r = mesh.points[c];
+      const double size = (q - p).cross(r - p).norm();
+      if (size > largest) largest = size, sheet.place = (p + q + r) / 3;
+    }
+    sheet.shape = sheet_statistics(mesh).front();
+    sheet.shape.triangles = 0;
+    expected.push_back(std::move(sheet));
+  }
+  return expected;
 }
 
 }  // namespace tetwright

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tetwright/mesh_quality.h"
+#include "tetwright/mesher.h"
 #include "tetwright/mesher_input.h"
 
 namespace tetwright {
@@ -20,5 +21,8 @@ struct SurfaceSolid {
 /// The solid of each body's material: the body without all later ones. std::nullopt for the first body if
 /// layers are cut from it.
 std::vector<std::optional<SurfaceSolid>> expected_solids(const MesherInput& input);
+
+/// Area, pieces and border of each sheet inside bodies; empty if there are none.
+std::vector<ExpectedSheet> expected_sheets(const MesherInput& input);
 
 }  // namespace tetwright

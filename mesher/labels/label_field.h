@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "mesher/distance/material_field.h"
+#include "mesher/domain/material_field.h"
 #include "tetwright/mesher_input.h"
 
 namespace tetwright {

@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "mesher/distance/material_field.h"
-#include "mesher/distance/sheeted_field.h"
+#include "mesher/domain/material_field.h"
 #include "mesher/lattice/lattice.h"
 #include "mesher/lattice/star_map.h"
 #include "mesher/lattice/tet_list.h"
+#include "mesher/level_sets/sheeted_field.h"
 #include "tetwright/mesher_input.h"
 #include "tetwright/tet_mesh.h"
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "mesher/distance/material_field.h"
+#include "mesher/domain/material_field.h"
 #include "mesher/lattice/octree.h"
 #include "mesher/lattice/tet_list.h"
 #include "tetwright/tet_mesh.h"

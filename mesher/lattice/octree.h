@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/geometry/morton.h"
-#include "mesher/distance/material_field.h"
+#include "mesher/domain/material_field.h"
 #include "tetwright/progress.h"
 
 namespace tetwright {

@@ -4,8 +4,8 @@
 // split_vdb(). The result is a surface or a volume, or an InputError.
 #include <stdexcept>
 
-#include "mesher/distance/openvdb_grids.h"
-#include "mesher/distance/vdb_structure.h"
+#include "mesher/level_sets/openvdb_grids.h"
+#include "mesher/level_sets/vdb_structure.h"
 #include "tests/fuzz/targets.h"
 #include "tetwright/error.h"
 

@@ -24,10 +24,10 @@ FOLDERS_OF_LIBRARIES = {
 FILES_OF_LIBRARIES = {
     "oneapi/": ("common/parallel/tbb_loop.cpp",),
     "tbb/": ("common/parallel/tbb_loop.cpp",),
-    "openvdb/": ("mesher/distance/openvdb_types.h", "mesher/distance/openvdb_grids.cpp",
-                 "mesher/distance/openvdb_conversion.cpp"),
+    "openvdb/": ("mesher/level_sets/openvdb_types.h", "mesher/level_sets/openvdb_grids.cpp",
+                 "mesher/level_sets/openvdb_conversion.cpp"),
 }
-OPENVDB_TYPES = "mesher/distance/openvdb_types.h"
+OPENVDB_TYPES = "mesher/level_sets/openvdb_types.h"
 
 
 def orders():

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "mesher/distance/body_field.h"
+#include "mesher/body_field.h"
 #include "tests/mesher/test_surfaces.h"
 
 namespace tetwright {

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "mesher/distance/material_field.h"
+#include "mesher/domain/material_field.h"
 #include "tests/mesher/test_surfaces.h"
 #include "tetwright/error.h"
 #include "tetwright/mesh_quality.h"

@@ -3,7 +3,7 @@
 
 #include "common/files/file_names.h"
 #include "common/io/size_files.h"
-#include "mesher/distance/vdb_sizes.h"
+#include "mesher/level_sets/vdb_sizes.h"
 
 namespace tetwright {
 

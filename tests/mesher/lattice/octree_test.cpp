@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "common/random.h"
-#include "mesher/distance/field_thickness.h"
+#include "mesher/thin/field_thickness.h"
 #include "tests/mesher/fields.h"
 #include "tests/mesher/random_octree.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Replaces mesher/distance/openvdb_grids.cpp: a map of leaves, filled with exact distances from the
+// Replaces mesher/level_sets/openvdb_grids.cpp: a map of leaves, filled with exact distances from the
 // triangles.
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "common/geometry/surface_tree.h"
-#include "mesher/distance/openvdb_grids.h"
+#include "mesher/level_sets/openvdb_grids.h"
 
 namespace tetwright {
 

@@ -5,10 +5,10 @@
 
 #include "mesher/cut/cutting.h"
 #include "mesher/cut/vertex_snapping.h"
-#include "mesher/distance/field_thickness.h"
-#include "mesher/distance/level_set_field.h"
 #include "mesher/labels/label_field.h"
 #include "mesher/labels/label_thickness.h"
+#include "mesher/level_sets/level_set_field.h"
+#include "mesher/thin/field_thickness.h"
 #include "tests/mesher/test_surfaces.h"
 #include "tetwright/resources.h"
 

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "common/geometry/projection_tree.h"
+#include "mesher/domain/material_field.h"
+#include "mesher/features/complex_patches.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/surface_mesh.h"
+#include "tetwright/tet_mesh.h"
+
+namespace tetwright {
+
+/// Closest-point queries on the surfaces of an input with their patches, creases and corners. Input units;
+/// all functions may be called concurrently.
+class FeatureSurface : public ReferenceSurface {
+ public:
+  using Patch = std::uint16_t;
+  /// Two patches that meet in a crease, ascending.
+  using PatchPair = std::array<Patch, 2>;
+  struct Place {
+    Vec3 point;
+    Vec3 normal;  ///< unit, out of the body
+    Patch patch;
+  };
+  struct CreasePlace {
+    Vec3 point;
+    PatchPair patches;
+  };
+  struct Corner {
+    Vec3 point;
+    std::vector<Patch> patches;  ///< patches that meet there, ascending
+  };
+
+  /// \param patches of each body, in the order of `input.bodies`; renumbered from 0, body by body
+  /// \param corner_reach as for find_creases()
+  /// \param field answers queries for faces without patches
+  /// \param of_sheets patches of the inner sheets of the input's complex, if it has any
+  FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach,
+                 std::shared_ptr<const MaterialField> field, const SheetPatches& of_sheets = {});
+
+  double signed_distance(const Vec3& point, MaterialTag material) const override {
+    return field_->signed_distance(point, material);
+  }
+  std::optional<Vec3> project(const Vec3& point, MaterialOrOutside first, MaterialOrOutside second,
+                              double max_distance) const override {
+    return field_->project(point, first, second, max_distance);
+  }
+  bool has_patches() const override { return true; }
+  std::optional<Vec3> onto_patch(const Vec3& point, MaterialOrOutside first, MaterialOrOutside second,
+                                 Patch patch, double max_distance) const override;
+  std::optional<Vec3> onto_crease(const Vec3& point, double max_distance) const override;
+  std::optional<Vec3> onto_corner(const Vec3& point, double max_distance) const override {
+    return corner_points_.nearest(point, {}, max_distance);
+  }
+
+  /// The sheet that a face lies on. If the surfaces are one complex, the faces between two of its regions are
+  /// a sheet; otherwise each body's surface is one, and a face between two materials lies on that of the
+  /// later body, since later bodies carve earlier ones. std::nullopt between layers of one body, on the box
+  /// of a meshed outside, and between regions that have no face in common in the complex. A face with one
+  /// material on both sides lies on an inner sheet, whose component is the face's patch.
+  std::optional<std::size_t> sheet_of(const InterfaceTriangle& face) const;
+  std::size_t sheet_of(Patch patch) const { return sheet_of_patch_[patch]; }
+  bool has_inner_sheets() const { return !inner_sheets_.empty(); }
+  bool is_inner(std::size_t sheet) const { return has_inner_sheets() && sheet >= sheets_.size(); }
+  /// True for patches that continue an inner sheet beyond its border.
+  bool is_continued(Patch patch) const {
+    return has_inner_sheets() && patch >= first_continued_ && patch < no_patch_;
+  }
+  /// True if creases include the curves in which three or more sheets meet.
+  bool has_junctions() const override { return !sheets_.empty(); }
+  /// The closest point on a sheet within `at_most`.
+  /// \param facing if given, only triangles whose normal is not opposite to it count
+  std::optional<Place> nearest(const Vec3& p, std::size_t sheet, double at_most,
+                               const Vec3* facing = nullptr) const;
+  /// The patch of faces that lie on no surface; queries for it go to the field.
+  Patch no_patch() const { return no_patch_; }
+  /// The closest point on one patch within `at_most`.
+  std::optional<Place> nearest_of_patch(const Vec3& p, Patch patch, double at_most) const;
+  /// The closest point on the creases between two patches within `at_most`.
+  std::optional<Vec3> onto_crease_between(const Vec3& p, const PatchPair& pair, double at_most) const;
+  /// The closest point on the creases for which `accepts(pair)` is true, within `at_most`.
+  template <class Accepts>
+  std::optional<CreasePlace> nearest_crease(const Vec3& p, double at_most, const Accepts& accepts) const {
+    const auto pair_of = [](const ProjectionTree::Item& item) {
+      return PatchPair{static_cast<Patch>(item.kind[0]), static_cast<Patch>(item.kind[1])};
+    };
+    const auto hit = creases_.nearest_of(
+        p, at_most, [&](const ProjectionTree::Item& item) { return accepts(pair_of(item)); });
+    if (!hit) return {};
+    return CreasePlace{hit->point, pair_of(creases_.items()[hit->item])};
+  }
+  const std::vector<Corner>& corners() const { return corners_; }
+  /// The surface region of the input that a patch belongs to, or none.
+  SurfaceRegion group_of(Patch patch) const {
+    return patch < groups_.size() ? groups_[patch] : SurfaceRegion{};
+  }
+
+ private:
+  std::shared_ptr<const MaterialField> field_;
+  Patch no_patch_ = 0;
+  /// Items of the trees, until these are built.
+  struct Items {
+    std::vector<Vec3> points;
+    std::vector<ProjectionTree::Item> triangles, segments;
+  };
+  void add_complex(const MesherInput& input, const std::vector<SurfacePatches>& patches,
+                   const SheetPatches& of_sheets, double corner_reach, Items& items);
+  void add_bodies(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach,
+                  Items& items);
+  /// Adds triangles with their patches, and the creases between these.
+  void add_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+                     const std::vector<std::uint16_t>& patches, Patch first_patch, double corner_reach,
+                     Items& items);
+
+  std::map<MaterialTag, std::size_t> bodies_;  ///< body of each material and layer
+  /// Sheet of each pair of regions of the complex, ascending; empty without a complex.
+  std::map<std::pair<RegionIndex, RegionIndex>, std::size_t> sheets_;
+  std::map<std::pair<std::uint32_t, RegionIndex>, std::size_t> inner_sheets_;  ///< by component and region
+  Patch first_continued_ = 0;
+  std::vector<std::size_t> sheet_of_patch_;
+  ProjectionTree triangles_, creases_, corner_points_;
+  std::vector<Vec3> normals_;  ///< of the items of triangles_
+  std::vector<Corner> corners_;
+  std::vector<SurfaceRegion> groups_;  ///< by patch
+};
+
+}  // namespace tetwright

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "mesher/features/complex_patches.h"
+#include "tetwright/mesher.h"
+#include "tetwright/mesher_input.h"
+
+namespace tetwright {
+
+/// The patches of all surfaces of an input. Creases are the borders between them.
+struct SurfaceFeatures {
+  std::vector<SurfacePatches> bodies;
+  SheetPatches sheets;  ///< of the complex, if there is one
+};
+
+/// Finds the patches of bodies and sheets.
+/// \param cell edge of a finest cell, input units; patches that are small for it are merged with neighbours
+/// 	hrows InputError for more than 65,534 patches
+SurfaceFeatures find_features(const MesherInput& input, const MesherOptions& options, double cell);
+
+/// True if there are creases, junctions or named groups to fit.
+bool has_features(const MesherInput& input, const SurfaceFeatures& features);
+
+/// False if creases were given up because surfaces meet without being joined: the borders of groups are then
+/// accurate to a cell only, like the curves in which the surfaces meet.
+bool are_exact(const SurfaceFeatures& features);
+
+/// Gives up creases that the finished mesh cannot have, and reports the others in `dense.report`: `features`,
+/// `creases`, and the slack that they cause in expected volumes.
+void settle_features(const MesherInput& input, SurfaceFeatures& features, DenseMesh& dense);
+
+}  // namespace tetwright

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesher/thin/surface_distance.h"
+
+#include <cmath>
+#include <cstdint>
+
+#include "common/geometry/point_triangle.h"
+#include "common/geometry/ray_crossing.h"
+#include "common/tolerances.h"
+#include "mesher/level_sets/hole_caps.h"
+#include "mesher/tuning/distance_tuning.h"
+#include "tetwright/resources.h"
+
+namespace tetwright {
+
+SurfaceDistance::SurfaceDistance(std::span<const Vec3> points, std::span<const Triangle> triangles,
+                                 std::size_t closed, const TriangleMesh& caps, bool intersects_itself)
+    : intersects_itself_(intersects_itself) {
+  const std::size_t surface = triangles.size(), count = surface + caps.triangles.size();
+  std::vector<std::array<Vec3, 3>> corners(count);
+  std::vector<Box3> boxes(count);
+  std::vector<Vec3> middles(count);  // times 3
+  parallel_for(0, count, DistanceGrains::elements, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        corners[t][k] = t < surface ? points[triangles[t][k]] : caps.points[caps.triangles[t - surface][k]];
+        boxes[t].add(corners[t][k]);
+      }
+      middles[t] = corners[t][0] + corners[t][1] + corners[t][2];
+    }
+  });
+  const std::vector<Index> order = median_order(boxes, middles, DistanceTuning::Triangles::leaf_size);
+  tree_ =
+      BoxTree(count, DistanceTuning::Triangles::leaf_size, [&](std::size_t i) { return boxes[order[i]]; });
+  triangles_.resize(count);
+  normals_.resize(count);
+  is_closed_.resize(count);
+  parallel_for(0, count, DistanceGrains::elements, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto& [a, b, c] = triangles_[i] = corners[order[i]];
+      const Vec3 normal = (b - a).cross(c - a);
+      const double length = normal.norm();
+      normals_[i] = length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero());
+      is_closed_[i] = order[i] < closed;
+    }
+  });
+  if (closed < surface) open_.emplace(points, triangles.subspan(closed));
+}
+
+std::optional<SurfacePlace> SurfaceDistance::nearest(const Vec3& point, double at_most) const {
+  std::size_t nearest = triangles_.size();
+  Vec3 place = point;
+  double squared_distance = at_most * at_most, alignment = 0;
+  tree_.nearest(point, squared_distance, tree_.all(), [&](std::size_t t, double best) {
+    if (normals_[t].isZero(0)) return best;
+    const auto& [a, b, c] = triangles_[t];
+    const Vec3 p = closest_point(point, a, b, c);
+    const double squared = (p - point).squaredNorm();
+    if (squared > squared_distance * (1 + DistanceTuning::Triangles::tie)) return best;
+    const double aligned = std::abs(normals_[t].dot(p - point));
+    if (nearest < triangles_.size() && squared >= squared_distance * (1 - DistanceTuning::Triangles::tie)) {
+      // Among equally close triangles choose the one that faces the point most directly, then the first, so
+      // that the result does not depend on the search order.
+      if (aligned < alignment || (aligned == alignment && t > nearest)) return best;
+    }
+    nearest = t;
+    place = p;
+    squared_distance = std::min(squared_distance, squared);
+    alignment = aligned;
+    return squared_distance * (1 + DistanceTuning::Triangles::tie);
+  });
+  if (nearest == triangles_.size()) return std::nullopt;
+  return SurfacePlace{place, normals_[nearest]};
+}
+
+bool SurfaceDistance::inside(const Vec3& point) const {
+  int winding = 0;
+  tree_.for_each_in(
+      [&](const Box3& box) {
+        return box.low.x() <= point.x() && point.x() <= box.high.x() && box.low.y() <= point.y() &&
+               point.y() <= box.high.y() && box.low.z() <= point.z();
+      },
+      [&](std::size_t t) {
+        if (!is_closed_[t]) return;
+        const auto& [a, b, c] = triangles_[t];
+        const int crossing = vertical_crossing(a, b, c, point);
+        if (crossing != 0 && at_or_above(a, b, c, crossing, point)) winding += crossing;
+      });
+  if (!open_) return winding > 0;
+  static const Vec3 offset(tolerance::winding_offset[0], tolerance::winding_offset[1],
+                           tolerance::winding_offset[2]);
+  return winding + open_->winding_number(point + offset) >= DistanceTuning::Caps::inside_winding;
+}
+
+std::optional<SurfacePlace> SurfaceDistance::nearest_facing(const Vec3& point, const Vec3& normal,
+                                                            double facing, double below,
+                                                            bool in_front) const {
+  const double limit = below * below;
+  SurfacePlace wall;
+  const double found = tree_.nearest(point, limit, tree_.all(), [&](std::size_t t, double best) {
+    if (!(normals_[t].dot(normal) < -facing)) return best;
+    const auto& [a, b, c] = triangles_[t];
+    if (in_front && (point - a).dot(normals_[t]) < 0) return best;
+    const Vec3 p = closest_point(point, a, b, c);
+    const double squared = (p - point).squaredNorm();
+    if (squared >= best) return best;
+    wall = {p, normals_[t]};
+    return squared;
+  });
+  if (!(found < limit)) return std::nullopt;
+  return wall;
+}
+
+bool SurfaceDistance::is_boundary(const SurfacePlace& place) const {
+  if (!intersects_itself_) return true;
+  return inside(place.point - DistanceTuning::Triangles::side_distance * place.normal) &&
+         !inside(place.point + DistanceTuning::Triangles::side_distance * place.normal);
+}
+
+double SurfaceDistance::thickness(const SurfacePlace& place, Side side, double facing, double at_most) const {
+  const Vec3 direction = side == Side::gap ? place.normal : Vec3(-place.normal);
+  double radius = 0.5 * at_most;
+  std::optional<SurfacePlace> wall;
+  for (int step = 0; step < DistanceTuning::Triangles::max_shrinks && radius > 0; ++step) {
+    const std::optional<SurfacePlace> nearer =
+        nearest_facing(place.point + radius * direction, place.normal, facing,
+                       radius * (1 - DistanceTuning::Triangles::min_shrink));
+    if (!nearer) break;
+    wall = nearer;
+    const Vec3 chord = wall->point - place.point;
+    const double along = chord.dot(direction);
+    const double next = along > 0 ? chord.squaredNorm() / (2 * along) : 0;
+    if (next >= radius * (1 - DistanceTuning::Triangles::min_shrink)) break;
+    radius = next;
+  }
+  if (wall && !(is_boundary(place) && is_boundary(*wall))) return at_most;
+  return 2 * radius;
+}
+
+}  // namespace tetwright

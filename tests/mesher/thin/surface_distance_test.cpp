@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Exact distances, inside tests and thicknesses of surfaces.
+#include "mesher/thin/surface_distance.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/random.h"
+#include "tests/mesher/test_surfaces.h"
+
+namespace tetwright::surface_distance_test {
+namespace {
+
+using Side = SurfaceDistance::Side;
+
+SurfaceDistance distance_of(const TriangleMesh& mesh) {
+  return {mesh.points, mesh.triangles, mesh.triangles.size(), {}, false};
+}
+
+/// The mesh rotated about an axis oblique to the grid.
+TriangleMesh turned(TriangleMesh mesh) {
+  const Eigen::AngleAxisd turn(0.7, Vec3(1, 2, 3).normalized());
+  for (Vec3& p : mesh.points) p = turn * p;
+  return mesh;
+}
+
+TEST(SurfaceDistance, InsideIsExactOnGridPlanesToo) {
+  const SurfaceDistance box = distance_of(make_box(Vec3(0, 0, 0), Vec3(4, 4, 1)));
+  EXPECT_TRUE(box.inside(Vec3(2, 2, 0.5)));
+  EXPECT_TRUE(box.inside(Vec3(2, 2, 1e-12)));
+  EXPECT_FALSE(box.inside(Vec3(2, 2, -1e-12)));
+  EXPECT_FALSE(box.inside(Vec3(2, 2, 1 + 1e-12)));
+  // A box inside a box, oriented inwards: a cavity.
+  const SurfaceDistance hollow = distance_of(
+      joined(make_box(Vec3(0, 0, 0), Vec3(3, 3, 3)), turned_over(make_box(Vec3(1, 1, 1), Vec3(2, 2, 2)))));
+  EXPECT_FALSE(hollow.inside(Vec3(1.5, 1.5, 1.5)));
+  EXPECT_TRUE(hollow.inside(Vec3(0.5, 1.5, 1.5)));
+}
+
+TEST(SurfaceDistance, NearestPlaceOfManyPoints) {
+  const TriangleMesh sphere = make_sphere(2);
+  const SurfaceDistance distance = distance_of(sphere);
+  Random random(7);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 p(4 * random.uniform() - 2, 4 * random.uniform() - 2, 4 * random.uniform() - 2);
+    const auto place = distance.nearest(p, 10);
+    ASSERT_TRUE(place);
+    EXPECT_NEAR((place->point - p).norm(), std::abs(p.norm() - 2), 0.01);
+    EXPECT_GT(place->normal.dot(place->point), 0);
+    EXPECT_FALSE(distance.nearest(p, 0.9 * (place->point - p).norm()));
+    EXPECT_EQ(distance.inside(p), p.norm() < 2 - 0.01 || (p.norm() < 2 && distance.inside(p)));
+  }
+}
+
+TEST(SurfaceDistance, ThicknessOfWallsAndGapsInAnyDirection) {
+  for (const bool turn : {false, true}) {
+    TriangleMesh two =
+        joined(make_box(Vec3(0, 0, 0), Vec3(10, 10, 0.3)), make_box(Vec3(0, 0, 0.5), Vec3(10, 10, 3)));
+    if (turn) two = turned(two);
+    const SurfaceDistance distance = distance_of(two);
+    const Vec3 up = turn ? Vec3(turned({{Vec3(0, 0, 1)}, {}}).points[0]) : Vec3(0, 0, 1);
+    const Vec3 middle = turn ? Vec3(turned({{Vec3(5, 5, 0.35)}, {}}).points[0]) : Vec3(5, 5, 0.35);
+    const auto place = distance.nearest(middle, 1);
+    ASSERT_TRUE(place);
+    EXPECT_NEAR(place->normal.dot(up), 1, 1e-12);
+    EXPECT_NEAR(distance.thickness(*place, Side::wall, 0.9, 5), 0.3, 1e-6);
+    EXPECT_NEAR(distance.thickness(*place, Side::gap, 0.9, 5), 0.2, 1e-6);
+    EXPECT_EQ(distance.thickness(*place, Side::wall, 0.9, 0.25), 0.25);
+  }
+}
+
+TEST(SurfaceDistance, ConvexEdgesAreNotThinAndWedgesAre) {
+  const SurfaceDistance box = distance_of(make_box(Vec3(0, 0, 0), Vec3(4, 4, 4)));
+  const auto near_edge = box.nearest(Vec3(0.01, 2, 4.1), 1);
+  ASSERT_TRUE(near_edge);
+  EXPECT_EQ(box.thickness(*near_edge, Side::wall, 0.3, 2), 2);
+  // A wedge of 20 degrees: the ball at a distance x from the tip has the diameter 2 x tan(10 degrees).
+  const double slope = std::tan(20 * M_PI / 180);
+  TriangleMesh wedge;
+  wedge.points = {Vec3(0, 0, 0), Vec3(10, 0, 0), Vec3(10, 0, 10 * slope),
+                  Vec3(0, 9, 0), Vec3(10, 9, 0), Vec3(10, 9, 10 * slope)};
+  wedge.triangles = {{0, 1, 2}, {3, 5, 4}, {0, 3, 4}, {0, 4, 1}, {1, 4, 5}, {1, 5, 2}, {0, 2, 5}, {0, 5, 3}};
+  if (enclosed_volume(wedge) < 0) wedge = turned_over(wedge);
+  const SurfaceDistance distance = distance_of(wedge);
+  const auto below = distance.nearest(Vec3(1, 4.5, -0.1), 1);
+  ASSERT_TRUE(below);
+  EXPECT_NEAR(distance.thickness(*below, Side::wall, 0.9, 2), 2 * std::tan(10 * M_PI / 180), 1e-4);
+  EXPECT_EQ(distance.thickness(*below, Side::wall, 0.99, 2), 2);
+}
+
+TEST(SurfaceDistance, AtAnEdgeTheFaceThatFacesThePoint) {
+  const SurfaceDistance box = distance_of(make_box(Vec3(0, 0, 0), Vec3(4, 4, 4)));
+  EXPECT_NEAR(box.nearest(Vec3(4.1, 2, 4.3), 1)->normal.z(), 1, 1e-12);
+  EXPECT_NEAR(box.nearest(Vec3(4.3, 2, 4.1), 1)->normal.x(), 1, 1e-12);
+}
+
+}  // namespace
+}  // namespace tetwright::surface_distance_test
