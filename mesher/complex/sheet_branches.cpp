@@ -39,6 +39,7 @@ SheetBranches::SheetBranches(const LabelledComplex& complex, const GridFrame& vo
   const std::vector<EdgeUse> uses = edge_uses(triangles, {});
   std::map<std::vector<std::uint32_t>, std::uint32_t> curves;  // by the components that meet
   std::vector<Edge> edges;
+  std::vector<std::array<Index, 2>> points;  // of the edges
   for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
     std::vector<std::uint32_t> components;
     for (; j < uses.size() && uses[j].key == uses[i].key; ++j)
@@ -46,8 +47,12 @@ SheetBranches::SheetBranches(const LabelledComplex& complex, const GridFrame& vo
     std::sort(components.begin(), components.end());
     if (components.front() == components.back()) continue;
     const std::array<Index, 2> ends = ends_of(uses[i].key);
-    Edge edge{
-        {voxels.to_grid(complex.points[ends[0]]), voxels.to_grid(complex.points[ends[1]])}, {}, {}, 0, {}};
+    Edge edge{{voxels.to_grid(complex.points[ends[0]]), voxels.to_grid(complex.points[ends[1]])},
+              {},
+              {},
+              {},
+              0,
+              {}};
     const Vec3 along = (edge.ends[1] - edge.ends[0]).normalized();
     for (std::size_t k = i; k < j; ++k) {
       const Triangle& ids = triangles[uses[k].triangle];
@@ -69,7 +74,13 @@ SheetBranches::SheetBranches(const LabelledComplex& complex, const GridFrame& vo
     edge.curve =
         curves.try_emplace(std::move(components), static_cast<std::uint32_t>(curves.size())).first->second;
     edges.push_back(std::move(edge));
+    points.push_back(ends);
   }
+  std::map<std::pair<std::uint32_t, Index>, int> at_points;
+  for (std::size_t e = 0; e < edges.size(); ++e)
+    for (const Index p : points[e]) ++at_points[{edges[e].curve, p}];
+  for (std::size_t e = 0; e < edges.size(); ++e)
+    for (std::size_t k = 0; k < 2; ++k) edges[e].is_last[k] = at_points[{edges[e].curve, points[e][k]}] == 1;
   std::vector<Box3> boxes;
   std::vector<Vec3> middles;
   for (const Edge& e : edges) {
@@ -81,6 +92,49 @@ SheetBranches::SheetBranches(const LabelledComplex& complex, const GridFrame& vo
   tree_ =
       BoxTree(order.size(), ComplexTuning::Zone::leaf_size, [&](std::size_t i) { return boxes[order[i]]; });
   for (const Index i : order) edges_.push_back(std::move(edges[i]));
+}
+
+std::vector<std::size_t> SheetBranches::sectors(const Edge& edge, const SideOf& side) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < edge.halves.size(); ++i) {
+    const Half &low = edge.halves[i], &high = edge.halves[(i + 1) % edge.halves.size()];
+    const std::optional<bool> at_low = side(low.component), at_high = side(high.component);
+    if ((!at_low || *at_low == low.front_follows) && (!at_high || *at_high != high.front_follows))
+      found.push_back(i);
+  }
+  return found;
+}
+
+bool SheetBranches::face_across(const Vec3& point, double reach, const SideOf& a, const SideOf& b) const {
+  std::optional<std::size_t> nearest;
+  tree_.nearest(point, reach * reach, tree_.all(), [&](std::size_t i, double limit) {
+    const double squared = (point - closest_on(edges_[i].ends, point)).squaredNorm();
+    if (squared > limit || (squared == limit && nearest && *nearest < i)) return limit;
+    nearest = i;
+    return squared;
+  });
+  if (!nearest) return false;
+  const Edge& edge = edges_[*nearest];
+  const Vec3 along = (edge.ends[1] - edge.ends[0]).normalized();
+  for (std::size_t k = 0; k < 2; ++k)
+    if (edge.is_last[k] &&
+        (point - edge.ends[k]).dot(k == 0 ? Vec3(-along) : along) > ComplexTuning::Sheets::beyond_curve)
+      return false;
+  // Sectors are certain if the sides of both their sheets are known.
+  const auto known = [&](const SideOf& side) {
+    std::vector<std::size_t> all = sectors(edge, side);
+    std::erase_if(all, [&](std::size_t i) {
+      return !side(edge.halves[i].component) || !side(edge.halves[(i + 1) % edge.halves.size()].component);
+    });
+    return all;
+  };
+  const std::vector<std::size_t> of_a = known(a), of_b = known(b);
+  if (of_a.empty() || of_b.empty()) return false;
+  const std::size_t count = edge.halves.size();
+  for (const std::size_t i : of_a)
+    for (const std::size_t j : of_b)
+      if (const std::size_t steps = (i + count - j) % count; steps <= 1 || steps == count - 1) return false;
+  return true;
 }
 
 void SheetBranches::hide(const Vec3& point, double reach, std::vector<NearSheet>& near) const {
@@ -112,11 +166,12 @@ void SheetBranches::hide(const Vec3& point, double reach, std::vector<NearSheet>
     // the one at the point's own angle.
     std::optional<std::size_t> sector;
     double best = HUGE_VAL;
-    for (std::size_t i = 0; i < edge.halves.size(); ++i) {
+    const auto side = [&](std::uint32_t component) -> std::optional<bool> {
+      const NearSheet* at = find(component);
+      return at ? std::optional(at->in_front()) : std::nullopt;
+    };
+    for (const std::size_t i : sectors(edge, side)) {
       const Half &low = edge.halves[i], &high = edge.halves[(i + 1) % edge.halves.size()];
-      const NearSheet *at_low = find(low.component), *at_high = find(high.component);
-      if (at_low && at_low->in_front() != low.front_follows) continue;
-      if (at_high && at_high->in_front() == high.front_follows) continue;
       const double end = high.angle > low.angle ? high.angle : high.angle + 4;
       const bool inside = (own >= low.angle && own <= end) || (own + 4 >= low.angle && own + 4 <= end);
       const double off = inside ? 0 : std::min(turn_between(own, low.angle), turn_between(own, high.angle));

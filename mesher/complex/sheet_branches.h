@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "common/geometry/box_tree.h"
@@ -37,6 +39,13 @@ class SheetBranches {
   /// \param near the sheets near the point, ascending by component
   void hide(const Vec3& point, double reach, std::vector<NearSheet>& near) const;
 
+  /// The side of a component, true in front of it, that something is on; nothing if it has none.
+  using SideOf = std::function<std::optional<bool>(std::uint32_t component)>;
+  /// Whether two sectors around the edge nearest to a point, given by the sides that they have, only touch
+  /// each other in the edge: false if they share a sheet, are none of that edge, or are beyond the end of the
+  /// curve.
+  bool face_across(const Vec3& point, double reach, const SideOf& a, const SideOf& b) const;
+
  private:
   /// A sheet that ends at an edge, as a half-plane there.
   struct Half {
@@ -46,10 +55,14 @@ class SheetBranches {
   };
   struct Edge {
     std::array<Vec3, 2> ends;
-    Vec3 u, v;  ///< unit, perpendicular to the edge; angles count from u to v
+    std::array<bool, 2> is_last;  ///< the curve ends there
+    Vec3 u, v;                    ///< unit, perpendicular to the edge; angles count from u to v
     std::uint32_t curve;
     std::vector<Half> halves;  ///< ascending by angle
   };
+
+  /// The sectors, by their first half, that fit the sides.
+  static std::vector<std::size_t> sectors(const Edge& edge, const SideOf& side);
 
   BoxTree tree_;
   std::vector<Edge> edges_;  ///< in the order of the tree; of one curve if the same components meet

@@ -27,6 +27,7 @@ class SheetZone {
   void find(const Vec3& point, std::vector<Near>& out) const;
   /// True if the component has faces in the region.
   bool is_in(std::uint32_t component, RegionIndex region) const;
+  const SheetBranches& branches() const { return branches_; }
   /// Distance, voxels, up to which points have a side.
   static double reach();
   /// The voxels through which sheets pass, as ascending Morton keys.

@@ -87,21 +87,24 @@ class StripCollapse {
       const auto sheet = surface_.sheet_of(f);
       if (!sheet || !surface_.nearest(middle, *sheet, Strips::sheet_reach * cell_)) found.push_back(f.ids);
     }
-    if (parts_)
-      for (const PartFace& f : part_faces(mesh_, *parts_))
-        if (face_across(parts_->field->part(parts_->of_tets[f.first]),
-                        parts_->field->part(parts_->of_tets[f.second])) &&
-            curves_.any_within((at(f.ids[0]) + at(f.ids[1]) + at(f.ids[2])) / 3, Strips::curve_reach * cell_))
-          found.push_back(f.ids);
+    if (!parts_) return found;
+    const SheetedField& field = *parts_->field;
+    const SheetBranches& branches = field.base().sheets()->branches();
+    for (const PartFace& f : part_faces(mesh_, *parts_)) {
+      const SheetedField::Part &a = field.part(parts_->of_tets[f.first]),
+                               &b = field.part(parts_->of_tets[f.second]);
+      if (a.region != b.region) continue;
+      const auto side = [](const SheetedField::Part& part) {
+        return [&part](std::uint32_t component) -> std::optional<bool> {
+          const SheetSides::Side* own = part.sides.of(component);
+          return own ? std::optional(own->in_front) : std::nullopt;
+        };
+      };
+      const Vec3 middle = (at(f.ids[0]) + at(f.ids[1]) + at(f.ids[2])) / 3;
+      if (branches.face_across(field.voxels().to_grid(middle), Strips::curve_reach, side(a), side(b)))
+        found.push_back(f.ids);
+    }
     return found;
-  }
-
-  /// Whether two parts only face each other across a curve: each has sides of several sheets there, but of
-  /// different ones.
-  static bool face_across(const SheetedField::Part& a, const SheetedField::Part& b) {
-    return a.region == b.region && a.sides.size() >= 2 && b.sides.size() >= 2 &&
-           std::none_of(a.sides.begin(), a.sides.end(),
-                        [&](const SheetSides::Side& s) { return b.sides.of(s.component) != nullptr; });
   }
 
   /// Collects the tets at the strips' points. Boundary faces become tets with a common point beyond the
