@@ -63,7 +63,7 @@ class StripCollapse {
     gather(strip);
     bool any = false;
     for (const auto& [u, v] : edges_of(strip, all)) any |= collapse(current(u), current(v));
-    if (any) finish();
+    if (any || split_) finish();
     return any;
   }
 
@@ -74,7 +74,7 @@ class StripCollapse {
   bool is_real(const Tet& t) const { return t[3] != beyond_; }
   MaterialOrOutside label(Index t) const {
     if (!is_real(tets_[t])) return {};
-    return parts_ ? MaterialTag{parts_->of_tets[t]} : mesh_.materials[t];
+    return parts_ ? MaterialTag{part_of_[t]} : material_of_[t];
   }
   static bool has(const Tet& t, Index p) { return std::find(t.begin(), t.end(), p) != t.end(); }
 
@@ -110,8 +110,9 @@ class StripCollapse {
   /// Collects the tets at the strips' points. Boundary faces become tets with a common point beyond the
   /// boundary, so that the mesh has no border.
   void gather(const std::vector<Triangle>& strip) {
-    beyond_ = static_cast<Index>(mesh_.points.size());
     tets_ = mesh_.tets;
+    material_of_ = mesh_.materials;
+    if (parts_) part_of_ = parts_->of_tets;
     for (const Triangle& f : strip)
       for (const Index p : f) at_[p];
     const auto list = [&](Index t) {
@@ -125,6 +126,8 @@ class StripCollapse {
       tets_.push_back({f.ids[0], f.ids[1], f.ids[2], beyond_});
       list(static_cast<Index>(tets_.size() - 1));
     }
+    material_of_.resize(tets_.size());
+    if (parts_) part_of_.resize(tets_.size());
     removed_.assign(tets_.size(), 0);
     for (const auto& [p, tets] : at_) {
       Regions& own = regions_[p];
@@ -189,8 +192,9 @@ class StripCollapse {
     std::set_intersection(a.begin(), a.end(), b.begin(), b.end(), std::inserter(both, both.end()));
     return both;
   }
-  /// The link condition in a manifold without border: the links of both points meet in that of the edge.
-  bool may_join(Index u, Index v) const {
+  /// Corners of what the links of two points have in common but that of their edge has not, so that the
+  /// points must not be joined (link condition in a manifold without border); nothing if they have no edge.
+  std::optional<std::set<Index>> in_the_way(Index u, Index v) const {
     Link edge;
     for (const Index t : at_.at(u)) {
       if (removed_[t] || !has(tets_[t], v)) continue;
@@ -200,23 +204,61 @@ class StripCollapse {
       edge.edges.insert(ascending_edge(opposite[0], opposite[1]));
       edge.points.insert(opposite.begin(), opposite.end());
     }
-    if (edge.edges.empty()) return false;
+    if (edge.edges.empty()) return {};
     const Link a = link_of(u), b = link_of(v);
-    return common(a.points, b.points) == edge.points && common(a.edges, b.edges) == edge.edges &&
-           common(a.triangles, b.triangles).empty();
+    std::set<Index> found;
+    for (const Index p : common(a.points, b.points))
+      if (!edge.points.contains(p)) found.insert(p);
+    for (const std::array<Index, 2>& e : common(a.edges, b.edges))
+      if (!edge.edges.contains(e)) found.insert(e.begin(), e.end());
+    for (const Triangle& f : common(a.triangles, b.triangles)) found.insert(f.begin(), f.end());
+    return found;
   }
 
-  /// The worst shape of the tets that stay if both points move to `place`.
-  double worst_shape(Index u, Index v, const Vec3& place) const {
+  /// Splits the longer of the edges from a point to two others, so that it is no longer joined to both.
+  void part_from(Index p, Index u, Index v) {
+    if (p == beyond_) return;
+    const Index end = (at(u) - at(p)).squaredNorm() >= (at(v) - at(p)).squaredNorm() ? u : v;
+    const auto middle = static_cast<Index>(mesh_.points.size());
+    mesh_.points.emplace_back((at(end) + at(p)) / 2);
+    std::vector<Index>& own = at_[middle];
+    const std::vector<Index> around = at_.at(end);
+    for (const Index t : around) {
+      if (removed_[t] || !has(tets_[t], p)) continue;
+      const auto added = static_cast<Index>(tets_.size());
+      tets_.push_back(tets_[t]);
+      material_of_.push_back(material_of_[t]);
+      if (parts_) part_of_.push_back(part_of_[t]);
+      removed_.push_back(0);
+      std::replace(tets_[t].begin(), tets_[t].end(), p, middle);
+      std::replace(tets_[added].begin(), tets_[added].end(), end, middle);
+      own.insert(own.end(), {t, added});
+      for (const Index q : tets_[added])
+        if (const auto known = at_.find(q); q != middle && known != at_.end()) {
+          if (q == p) std::erase(known->second, t);
+          known->second.push_back(added);
+        }
+    }
+    split_ = true;
+    Regions& regions = regions_[middle];
+    for (const Index t : own) regions.insert(label(t));
+  }
+
+  /// The worst shape of the tets that stay if both points move to a position: the smallest solid angle, or
+  /// below 0 the smallest volume over the cube of the cell, if one would not be positive.
+  double worst_shape(Index u, Index v, const Vec3& position) const {
     double worst = HUGE_VAL;
     for (const Index p : {u, v})
       for (const Index t : at_.at(p)) {
         const Tet& ids = tets_[t];
         if (removed_[t] || !is_real(ids) || (has(ids, u) && has(ids, v))) continue;
         std::array<Vec3, 4> c;
-        for (std::size_t k = 0; k < 4; ++k) c[k] = ids[k] == u || ids[k] == v ? place : at(ids[k]);
-        if (!(orient3d(c[0], c[1], c[2], c[3]) > 0)) return 0;
-        worst = std::min(worst, min_solid_angle(c[0], c[1], c[2], c[3]));
+        for (std::size_t k = 0; k < 4; ++k) c[k] = ids[k] == u || ids[k] == v ? position : at(ids[k]);
+        if (orient3d(c[0], c[1], c[2], c[3]) > 0)
+          worst = std::min(worst, min_solid_angle(c[0], c[1], c[2], c[3]));
+        else
+          worst = std::min(
+              worst, -std::abs((c[1] - c[0]).cross(c[2] - c[0]).dot(c[3] - c[0])) / (cell_ * cell_ * cell_));
       }
     return worst;
   }
@@ -253,13 +295,42 @@ class StripCollapse {
     return places;
   }
 
-  bool collapse(Index u, Index v) {
-    if (u == v || !may_join(u, v)) return false;
-    double best = Strips::min_solid_angle;
-    std::optional<Vec3> place;
+  /// The candidate with the best shapes; if none has tets of positive volume, what is found from there by a
+  /// compass search (Kolda, Lewis and Torczon 2003, section 1).
+  std::optional<Vec3> best_position(Index u, Index v) const {
+    double best = -HUGE_VAL;
+    Vec3 position = at(u);
     for (const Vec3& p : candidates(u, v))
-      if (const double worst = worst_shape(u, v, p); worst > best) best = worst, place = p;
-    if (!place) return false;
+      if (const double worst = worst_shape(u, v, p); worst > best) best = worst, position = p;
+    const bool is_free = !regions_.at(u).contains(std::nullopt) && !regions_.at(v).contains(std::nullopt);
+    for (double step = Strips::first_step;
+         is_free && best <= Strips::min_solid_angle && step > Strips::last_step;) {
+      const Vec3 from = position;
+      for (int x = -1; x <= 1; ++x)
+        for (int y = -1; y <= 1; ++y)
+          for (int z = -1; z <= 1; ++z) {
+            const Vec3 p = from + step * cell_ * Vec3(x, y, z);
+            if (const double worst = worst_shape(u, v, p); worst > best) best = worst, position = p;
+          }
+      if (position == from) step /= 2;
+    }
+    return best > Strips::min_solid_angle ? std::optional(position) : std::nullopt;
+  }
+
+  bool collapse(Index u, Index v) {
+    if (u == v) return false;
+    std::optional<std::set<Index>> others = in_the_way(u, v);
+    if (!others) return false;
+    std::optional<Vec3> position = best_position(u, v);
+    if (!position) return false;
+    if (!others->empty()) {
+      if (others->size() > Strips::max_splits || others->contains(beyond_)) return false;
+      for (const Index p : *others) part_from(p, u, v);
+      others = in_the_way(u, v);
+      if (!others || !others->empty()) return false;
+      position = best_position(u, v);
+      if (!position) return false;
+    }
     std::vector<Index>& kept = at_[u];
     for (const Index t : at_[v]) {
       if (removed_[t]) continue;
@@ -271,7 +342,7 @@ class StripCollapse {
       kept.push_back(t);
     }
     std::erase_if(kept, [&](Index t) { return removed_[t] != 0; });
-    mesh_.points[u] = *place;
+    mesh_.points[u] = *position;
     regions_[u].insert(regions_[v].begin(), regions_[v].end());
     moved_to_[v] = u;
     return true;
@@ -279,16 +350,15 @@ class StripCollapse {
 
   /// Takes over the remaining tets and drops unused points.
   void finish() {
-    std::size_t count = 0;
-    for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
-      if (removed_[t]) continue;
-      mesh_.tets[count] = tets_[t];
-      if (parts_) parts_->of_tets[count] = parts_->of_tets[t];
-      mesh_.materials[count++] = mesh_.materials[t];
+    mesh_.tets.clear();
+    mesh_.materials.clear();
+    if (parts_) parts_->of_tets.clear();
+    for (std::size_t t = 0; t < tets_.size(); ++t) {
+      if (removed_[t] || !is_real(tets_[t])) continue;
+      mesh_.tets.push_back(tets_[t]);
+      mesh_.materials.push_back(material_of_[t]);
+      if (parts_) parts_->of_tets.push_back(part_of_[t]);
     }
-    if (parts_) parts_->of_tets.resize(count);
-    mesh_.tets.resize(count);
-    mesh_.materials.resize(count);
     std::vector<Index> number(mesh_.points.size(), no_index);
     for (const Tet& t : mesh_.tets)
       for (const Index p : t) number[p] = 0;
@@ -309,12 +379,15 @@ class StripCollapse {
   const ProjectionTree& curves_;
   double cell_;
   SheetParts* parts_;
-  Index beyond_ = no_index;
-  std::vector<Tet> tets_;                   ///< those of the mesh, then those of the boundary's faces
+  static constexpr Index beyond_ = no_index;
+  std::vector<Tet> tets_;  ///< those of the mesh, those of the boundary's faces, and those of splits
+  std::vector<MaterialTag> material_of_;    ///< by tet
+  std::vector<RegionIndex> part_of_;        ///< by tet, if there are parts
   std::vector<char> removed_;               ///< by tet
   std::map<Index, std::vector<Index>> at_;  ///< tets at each point of a strip
   std::map<Index, Regions> regions_;        ///< at each point of a strip
   std::unordered_map<Index, Index> moved_to_;
+  bool split_ = false;
 };
 
 }  // namespace

@@ -123,9 +123,14 @@ struct CutTuning {
     /// Faces farther than this from a sheet between their regions, cells, are strips.
     static constexpr double sheet_reach = 1.5;
     /// Tets keep this solid angle, sr, when edges are collapsed; fitting and simplification improve them.
-    static constexpr double min_solid_angle = 1e-4;
+    static constexpr double min_solid_angle = 1e-6;
     /// Max rounds: each may make edges of others collapsible.
     static constexpr int max_rounds = 12;
+    /// Steps of the search for a position, cells: from about the width of a strip to below what changes
+    /// shapes.
+    static constexpr double first_step = 0.5, last_step = 0.01;
+    /// Max edges that are split so that an edge may be collapsed: mostly it is one.
+    static constexpr std::size_t max_splits = 4;
   };
 
   /// Moves of boundary points to their patch, crease or corner (the guide, Fitting creases, step 5).
