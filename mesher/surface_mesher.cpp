@@ -11,6 +11,7 @@
 #include "mesher/complex/labelled_complex.h"
 #include "mesher/cut/thin_wall_recovery.h"
 #include "mesher/domain/material_field.h"
+#include "mesher/features/cap_faces.h"
 #include "mesher/features/crease_fitting.h"
 #include "mesher/features/strip_collapse.h"
 #include "mesher/features/surface_features.h"
@@ -203,6 +204,8 @@ class SurfaceMeshing {
     settle_features(input_, features_, dense);
     if (has_features(input_, features_)) fit_features(dense);
     dense.surface = std::make_shared<const TriangleMesh>(all_surfaces(input_));
+    if (!input_.holes.empty())
+      dense.caps = std::make_shared<const SurfaceCapFaces>(input_, dense.report.cell_size);
     dense.report.filling_tets = filling_tets(dense.report);
     return dense;
   }

@@ -121,6 +121,8 @@ Prepared carry_out(std::vector<Input> inputs, PrepareRun& run) {
   // Comparing and returning the mesh has no deadline.
   run.progress.set_deadline(Progress::no_deadline);
   assess(result.mesh, run);
+  // The borders of caps follow faces: they are no curves of the mesh for anything that comes before.
+  if (run.caps) run.report.caps = run.caps->name(result.mesh);
   result.midside = std::move(run.midside);
   run.progress.throw_if_stopped();
   return result;
