@@ -205,7 +205,7 @@ class SurfaceMeshing {
     if (has_features(input_, features_)) fit_features(dense);
     dense.surface = std::make_shared<const TriangleMesh>(all_surfaces(input_));
     if (!input_.holes.empty())
-      dense.caps = std::make_shared<const SurfaceCapFaces>(input_, dense.report.cell_size);
+      dense.caps = std::make_shared<const SurfaceCapFaces>(input_, bodies_.caps, dense.report.cell_size);
     dense.report.filling_tets = filling_tets(dense.report);
     return dense;
   }
@@ -284,8 +284,9 @@ class SurfaceMeshing {
   void fit_features(DenseMesh& dense) {
     stages_.begin("creases");
     const double cell = dense.report.cell_size;
-    const auto features = std::make_shared<const FeatureSurface>(
-        input_, features_.bodies, CellTuning::Patches::corner_reach * cell, dense.field, features_.sheets);
+    const auto features = std::make_shared<const FeatureSurface>(input_, features_.bodies,
+                                                                 CellTuning::Patches::corner_reach * cell,
+                                                                 dense.field, features_.sheets, bodies_.caps);
     if (input_.complex && input_.complex->sheets.empty())
       collapse_strips(dense.mesh, *input_.complex, *features, cell);
     fit_creases(dense.mesh, *features, *bodies_.field, cell);

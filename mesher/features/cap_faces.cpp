@@ -30,17 +30,19 @@ struct TreeBuilder {
   void add(const std::vector<Vec3>& more, const std::vector<Triangle>& triangles, std::uint32_t kind) {
     const auto first = static_cast<Index>(points.size());
     points.insert(points.end(), more.begin(), more.end());
-    for (const auto& [a, b, c] : triangles) items.push_back({{first + a, first + b, first + c}, {kind, 0, 0}});
+    for (const auto& [a, b, c] : triangles)
+      items.push_back({{first + a, first + b, first + c}, {kind, 0, 0}});
   }
   ProjectionTree build() { return {std::move(points), std::move(items)}; }
 };
 
 }  // namespace
 
-SurfaceCapFaces::SurfaceCapFaces(const MesherInput& input, double cell)
-    : near_((input.complex ? CellTuning::Caps::near_joined : CellTuning::Caps::near) *
+SurfaceCapFaces::SurfaceCapFaces(const MesherInput& input, const std::vector<TriangleMesh>& caps, double cell)
+    : cell_(cell),
+      near_((input.complex ? CellTuning::Caps::near_joined : CellTuning::Caps::near) *
             (input.high - input.low).norm()) {
-  TreeBuilder surfaces, closings;
+  TreeBuilder surfaces, closings, winding;
   for (std::uint32_t h = 0; h < input.holes.size(); ++h) {
     const SurfaceHole& hole = input.holes[h];
     holes_.push_back({.name = hole.name, .flat = hole.flat, .sharp = hole.sharp});
@@ -49,11 +51,14 @@ SurfaceCapFaces::SurfaceCapFaces(const MesherInput& input, double cell)
     for (const auto& [a, b] : hole.rim) edges.push_back({a, b, b});
     closings.add(hole.points, hole.flat ? hole.triangles : edges, h + 1);
   }
-  if (!closings.items.empty())
+  if (!closings.items.empty()) {
     for (const MesherInput::Body& body : input.bodies)
       surfaces.add(body.surface.points, body.surface.triangles, 0);
+    for (const TriangleMesh& c : caps) winding.add(c.points, c.triangles, 0);
+  }
   surfaces_ = surfaces.build();
   closings_ = closings.build();
+  winding_caps_ = winding.build();
 }
 
 std::size_t SurfaceCapFaces::hole_of(const TetMesh& mesh, const InterfaceTriangle& face) const {
@@ -63,9 +68,13 @@ std::size_t SurfaceCapFaces::hole_of(const TetMesh& mesh, const InterfaceTriangl
   const auto closing = closings_.nearest_of(centre, infinity, any);
   const auto surface = surfaces_.nearest_of(centre, infinity, any);
   if (!closing || !surface) return holes_.size();
-  if ((closing->point - centre).norm() > (surface->point - centre).norm() + near_) return holes_.size();
   const ProjectionTree::Item& item = closings_.items()[closing->item];
   const std::size_t hole = item.kind[0] - 1;
+  const double from_surface = (surface->point - centre).norm();
+  if ((closing->point - centre).norm() > from_surface + near_) {
+    const bool far = from_surface > cell_ && winding_caps_.any_within(centre, from_surface);
+    return far && !holes_[hole].flat ? hole : holes_.size();
+  }
   if (!holes_[hole].flat) return hole;
   const Vec3& first = closings_.corner(item, 0);
   const Vec3 normal = (closings_.corner(item, 1) - first).cross(closings_.corner(item, 2) - first);

@@ -86,8 +86,7 @@ bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
     throw UsageError(
         "--regions and --region are for surfaces, and the input is a segmented volume; --label-names names "
         "its labels");
-  if (!bodies.caps.empty())
-    throw UsageError("--cap is for surfaces, and the input is a segmented volume");
+  if (!bodies.caps.empty()) throw UsageError("--cap is for surfaces, and the input is a segmented volume");
   return true;
 }
 

@@ -144,19 +144,19 @@ struct MesherReport {
 /// The faces of a mesh that close holes of the surfaces.
 struct CapReport {
   struct Cap {
-    std::string name;           ///< of its patch
-    bool flat = false;          ///< the rim is flat, and so is the cap
-    bool sharp = false;         ///< flat, and the rim is a crease
-    std::size_t triangles = 0;  ///< 1 or more
-    double area = 0;            ///< input units squared
+    std::string name;            ///< of its patch
+    bool flat = false;           ///< the rim is flat, and so is the cap
+    bool sharp = false;          ///< flat, and the rim is a crease
+    std::size_t triangles = 0;   ///< 1 or more
+    double area = 0;             ///< input units squared
     Vec3 centre = Vec3::Zero();  ///< mean of its faces, input units
     Vec3 normal = Vec3::Zero();  ///< unit, mean of its faces, out of the material
   };
-  std::vector<Cap> caps;        ///< with faces; largest holes first
-  std::size_t holes = 0;        ///< of the surfaces, also those too small for faces of their own
-  std::size_t flat = 0;         ///< of these, closed in the plane of their rim
-  double area = 0;              ///< of all caps, input units squared
-  double boundary_area = 0;     ///< of the boundary of all materials, input units squared
+  std::vector<Cap> caps;     ///< with faces; largest holes first
+  std::size_t holes = 0;     ///< of the surfaces, also those too small for faces of their own
+  std::size_t flat = 0;      ///< of these, closed in the plane of their rim
+  double area = 0;           ///< of all caps, input units squared
+  double boundary_area = 0;  ///< of the boundary of all materials, input units squared
 };
 
 /// Names the faces of meshes that close holes.

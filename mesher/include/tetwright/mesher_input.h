@@ -207,7 +207,7 @@ struct SurfaceHole {
   std::vector<Vec3> points;  ///< of the rim, input units; of a hole that is not flat also its centre
   std::vector<std::array<Index, 2>> rim;  ///< edges
   std::vector<Triangle> triangles;        ///< the cap; of a hole that is not flat a fan around its centre
-  std::size_t surface = 0;  ///< index of the surface that has it, among those given
+  std::size_t surface = 0;                ///< index of the surface that has it, among those given
   std::uint32_t group = 0;  ///< of a sharp cap's triangles in that surface, see RepairedSurface::groups
 };
 
@@ -281,7 +281,8 @@ enum class SurfaceFlaw : std::uint8_t {
 /// the group that is its whole outer boundary, or NAME_1, NAME_2 and so on by volume, largest first. A wall
 /// is part of both cells' surfaces. Closed shells that touch, cross or contain each other are no walls.
 ///
-/// Flat holes are closed first, see CapOptions. Caps are called cap_1, cap_2 and so on by size, largest first.
+/// Flat holes are closed first, see CapOptions. Caps are called cap_1, cap_2 and so on by size, largest
+/// first.
 ///
 /// If more than one surface has groups of triangles, names that occur in several surfaces are qualified (see
 /// qualify_names()), and groups that have only a number are named after their surface.
