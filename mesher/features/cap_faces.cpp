@@ -83,7 +83,7 @@ std::size_t SurfaceCapFaces::hole_of(const TetMesh& mesh, const InterfaceTriangl
   return alike >= CellTuning::Caps::min_facing * normal.norm() * of_face.norm() ? hole : holes_.size();
 }
 
-CapReport SurfaceCapFaces::name(TetMesh& mesh) const {
+CapReport SurfaceCapFaces::name(TetMesh& mesh, CapNaming naming) const {
   CapReport report;
   report.holes = holes_.size();
   std::vector<CapReport::Cap> caps = holes_;
@@ -95,13 +95,13 @@ CapReport SurfaceCapFaces::name(TetMesh& mesh) const {
   parallel_for(0, mesh.interfaces.size(), CutGrains::searches, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const InterfaceTriangle& t = mesh.interfaces[i];
-      if (!is_boundary(t)) continue;
+      if (t.is_sheet()) continue;
       if (const auto group = mesh.patch_groups.find({t.pair(), t.patch}); group != mesh.patch_groups.end())
         if (const auto known = sharp.find(group->second.name); known != sharp.end()) {
           hole[i] = known->second;
           continue;
         }
-      if (!sharp_only) hole[i] = hole_of(mesh, t);
+      if (!sharp_only && is_boundary(t)) hole[i] = hole_of(mesh, t);
     }
   });
 
@@ -113,18 +113,19 @@ CapReport SurfaceCapFaces::name(TetMesh& mesh) const {
   std::map<std::pair<MaterialPair, std::size_t>, std::uint16_t> patches;
   for (std::size_t i = 0; i < hole.size(); ++i) {
     InterfaceTriangle& t = mesh.interfaces[i];
-    if (!is_boundary(t)) continue;
     const Vec3 &a = mesh.points[t.ids[0]], &b = mesh.points[t.ids[1]], &c = mesh.points[t.ids[2]];
     // Away from the material.
     const Vec3 vector = (t.material == outside_tag ? -0.5 : 0.5) * (b - a).cross(c - a);
-    report.boundary_area += vector.norm();
+    if (is_boundary(t)) report.boundary_area += vector.norm();
     if (hole[i] == holes_.size()) continue;
+    if (is_boundary(t)) report.area += vector.norm();
     CapReport::Cap& cap = caps[hole[i]];
     ++cap.triangles;
     cap.area += vector.norm();
     cap.normal += vector;
     cap.centre += vector.norm() * (a + b + c) / 3;
-    if (cap.sharp) continue;
+    cap.named |= cap.sharp;
+    if (cap.sharp || naming == CapNaming::sharp) continue;
     auto patch = patches.find({t.pair(), hole[i]});
     if (patch == patches.end()) {
       std::uint16_t& number = last[t.pair()];
@@ -133,13 +134,13 @@ CapReport SurfaceCapFaces::name(TetMesh& mesh) const {
       mesh.patch_groups[{t.pair(), number}] = {0, cap.name};
     }
     t.patch = patch->second;
+    cap.named = true;
   }
   for (CapReport::Cap& cap : caps) {
     report.flat += cap.flat;
     if (cap.triangles == 0) continue;
     if (cap.area > 0) cap.centre /= cap.area;
     if (cap.normal.norm() > 0) cap.normal.normalize();
-    report.area += cap.area;
     report.caps.push_back(std::move(cap));
   }
   return report;

@@ -21,7 +21,7 @@ class SurfaceCapFaces : public CapFaces {
   /// \param cell edge of a finest cell, input units; smaller holes get no patch unless they have one
   SurfaceCapFaces(const MesherInput& input, const std::vector<TriangleMesh>& caps, double cell);
 
-  CapReport name(TetMesh& mesh) const override;
+  CapReport name(TetMesh& mesh, CapNaming naming) const override;
 
  private:
   /// Index of the hole that a face closes, or that of none.

@@ -319,6 +319,7 @@ nlohmann::json caps_json(const CapReport& report) {
                             {"area", cap.area},
                             {"centre", place_json(cap.centre)},
                             {"normal", place_json(cap.normal)},
+                            {"named", cap.named},
                             {"flat", cap.flat},
                             {"crease", cap.sharp}});
   return j;

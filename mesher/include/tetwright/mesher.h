@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -147,26 +148,33 @@ struct CapReport {
     std::string name;            ///< of its patch
     bool flat = false;           ///< the rim is flat, and so is the cap
     bool sharp = false;          ///< flat, and the rim is a crease
+    bool named = false;          ///< its faces are a patch of the mesh
     std::size_t triangles = 0;   ///< 1 or more
     double area = 0;             ///< input units squared
     Vec3 centre = Vec3::Zero();  ///< mean of its faces, input units
-    Vec3 normal = Vec3::Zero();  ///< unit, mean of its faces, out of the material
+    Vec3 normal = Vec3::Zero();  ///< unit, mean of its faces, out of the material of the smaller tag
   };
-  std::vector<Cap> caps;     ///< with faces; largest holes first
-  std::size_t holes = 0;     ///< of the surfaces, also those too small for faces of their own
+  std::vector<Cap> caps;     ///< those with faces; largest holes first
+  std::size_t holes = 0;     ///< of the surfaces, also those without faces of their own
   std::size_t flat = 0;      ///< of these, closed in the plane of their rim
-  double area = 0;           ///< of all caps, input units squared
+  double area = 0;           ///< of all caps on the boundary, input units squared
   double boundary_area = 0;  ///< of the boundary of all materials, input units squared
+};
+
+/// Which caps get a patch.
+enum class CapNaming : std::uint8_t {
+  sharp,  ///< those whose rim is a crease
+  all     ///< also those whose rim is only a border between faces, which need not be smooth
 };
 
 /// Names the faces of meshes that close holes.
 class CapFaces {
  public:
   virtual ~CapFaces() = default;
-  /// Makes the faces of each cap a patch of `mesh.interfaces` that is named in `mesh.patch_groups`.
-  /// \param mesh made from the surfaces, with its interfaces. Its patches keep to the curves of a mesh only
-  ///   as long as it is not changed: naming comes last.
-  virtual CapReport name(TetMesh& mesh) const = 0;
+  /// Makes the faces of caps patches of `mesh.interfaces` that are named in `mesh.patch_groups`.
+  /// \param mesh made from the surfaces, with its interfaces. With CapNaming::all nothing should change it
+  ///   afterwards that keeps the borders of patches, as the simplifier does.
+  virtual CapReport name(TetMesh& mesh, CapNaming naming) const = 0;
 };
 
 class MaterialField;
