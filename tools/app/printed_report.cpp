@@ -87,12 +87,17 @@ std::string feature_line(const FeatureReport& f) {
 std::string caps_line(const CapReport& report) {
   std::string line =
       text("caps: %zu of %zu hole%s", report.caps.size(), report.holes, report.holes == 1 ? "" : "s");
-  if (report.caps.empty()) return line + " have faces of their own: they are too small, or hidden by another body";
+  if (report.caps.empty())
+    return line + " have faces of their own: they are too small, or hidden by another body";
   constexpr std::size_t max_named = 8;
   line += text(", %.3g %% of the boundary: ", 100 * report.area / report.boundary_area);
   for (std::size_t i = 0; i < std::min(max_named, report.caps.size()); ++i) {
     const CapReport::Cap& cap = report.caps[i];
-    line += (i > 0 ? ", " : "") + cap.name + text(" (area %.4g%s)", cap.area, !cap.named ? ", not a patch" : cap.flat ? ", flat" : "");
+    line += (i > 0 ? ", " : "") + cap.name +
+            text(" (area %.4g%s)", cap.area,
+                 !cap.named ? ", not a patch"
+                 : cap.flat ? ", flat"
+                            : "");
   }
   if (report.caps.size() > max_named) line += text(" and %zu more", report.caps.size() - max_named);
   return printable(line);
