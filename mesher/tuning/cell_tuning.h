@@ -115,7 +115,7 @@ struct CellTuning {
     /// Max difference, in diagonals, of the distances from surface and cap at which a face still belongs to
     /// the cap: above rounding, far below the size of faces.
     static constexpr double near = 1e-9;
-    /// The same where surfaces were joined within the contact tolerance, twice its default.
+    /// Likewise where surfaces were joined within the contact tolerance: twice its default.
     static constexpr double near_joined = 2e-5;
     /// Cosine between the normals of a flat cap and its faces: 60 degrees, as the faces of its neighbours may
     /// be as near.

@@ -152,10 +152,9 @@ nlohmann::json topology_json(const Topology& t, const std::map<MaterialTag, std:
 nlohmann::json mesh_json(const MeshStatistics& m, const std::map<MaterialTag, std::string>& names,
                          double threshold) {
   nlohmann::json materials = nlohmann::json::array();
-  for (const auto& [tag, material] : m.materials) {
+  for (const auto& [tag, material] : m.materials)
     materials.push_back(
         {{"tag", tag}, {"name", name_of(tag, names)}, {"tets", material.tets}, {"volume", material.volume}});
-  }
   nlohmann::json interfaces = nlohmann::json::array();
   for (const auto& [pair, interface] : m.interfaces) {
     interfaces.push_back(
