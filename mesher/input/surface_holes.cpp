@@ -88,8 +88,23 @@ SurfaceHole open_hole(const HoleRim& rim, const std::vector<Vec3>& points) {
   return hole;
 }
 
+/// Spreads the bits of an edge's key (the finalizer of SplitMix64).
+std::uint64_t mixed(std::uint64_t key) {
+  key = (key ^ (key >> 30)) * 0xbf58476d1ce4e5b9u;
+  key = (key ^ (key >> 27)) * 0x94d049bb133111ebu;
+  return key ^ (key >> 31);
+}
+
 /// Whether an edge has one triangle only.
 bool has_free_edges(const std::vector<Triangle>& triangles) {
+  // Edges of two triangles cancel out, so that closed surfaces need no sorting.
+  std::uint64_t odd = 0;
+  for (const Triangle& t : triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [a, b] = std::minmax(t[k], t[(k + 1) % 3]);
+      odd ^= mixed(std::uint64_t{a} << 32 | b);
+    }
+  if (odd == 0) return false;
   const std::vector<EdgeUse> uses = edge_uses(triangles, {});
   for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
     while (j < uses.size() && uses[j].key == uses[i].key) ++j;
