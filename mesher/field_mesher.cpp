@@ -15,7 +15,6 @@
 #include "mesher/lattice/lattice.h"
 #include "mesher/lattice/octree.h"
 #include "mesher/mesh_estimate.h"
-#include "mesher/sheet_faces.h"
 #include "mesher/sizing/sized_cells.h"
 #include "mesher/thin/local_thickness.h"
 #include "mesher/tuning/cell_tuning.h"
@@ -41,15 +40,9 @@ void number_box_patches(std::vector<InterfaceTriangle>& interfaces, const std::v
   });
 }
 
-/// \param sheeted the field that the mesh was cut from if it has sheets, or null
-TetMesh to_input_units(CutMesh cut, const MaterialField& field, const SheetedField* sheeted) {
+TetMesh to_input_units(CutMesh cut, const MaterialField& field) {
   TetMesh mesh;
   const GridFrame& frame = field.frame();
-  std::vector<InterfaceTriangle> sheets;
-  if (sheeted) {
-    sheets = sheet_faces(cut, *sheeted, cut.on_interface);
-    cut.regions = regions_without_sheets(cut.regions, *sheeted);
-  }
   mesh.points = std::move(cut.points);
   std::vector<std::uint8_t> candidates = std::move(cut.on_interface);
   std::vector<std::uint8_t> sides(mesh.points.size());
@@ -78,7 +71,6 @@ TetMesh to_input_units(CutMesh cut, const MaterialField& field, const SheetedFie
   });
   mesh.interfaces = find_interfaces(mesh, &candidates);
   if (field.volume()) number_box_patches(mesh.interfaces, sides);
-  mesh.interfaces.insert(mesh.interfaces.end(), sheets.begin(), sheets.end());
   return mesh;
 }
 
@@ -189,11 +181,12 @@ ThickenedWallsReport thickened_report(const ThickenedWalls& left, const GridFram
           frame.to_input(left.place)};
 }
 
-DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<MortonKey> interface_voxels,
+FieldMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<MortonKey> interface_voxels,
                      RefinementRegions finer, const MesherOptions& options, const MemoryModel& memory,
                      MesherReport report, Stages& stages,
                      const std::function<void(const std::vector<std::uint8_t>&)>& validate_regions) {
-  DenseMesh result;
+  FieldMesh made;
+  DenseMesh& result = made.dense;
   Progress* progress = stages.progress();
   if (options.max_cell && !options.uniform)
     finer =
@@ -259,7 +252,12 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
     cut.on_interface = std::move(on_interface);
     field = std::move(as_is);
   }
-  result.mesh = to_input_units(std::move(cut), *field, sheeted.get());
+  if (sheeted) {
+    std::vector<RegionIndex> materials = regions_without_sheets(cut.regions, *sheeted);
+    made.parts = {sheeted, std::move(cut.regions)};
+    cut.regions = std::move(materials);
+  }
+  result.mesh = to_input_units(std::move(cut), *field);
   report.seconds_cut = stages.seconds();
   stages.throw_if_stopped();
 
@@ -269,7 +267,7 @@ DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
     result.reference = std::make_shared<CutOffSurface>(result.mesh, field);
   result.field = std::move(field);
   result.report = std::move(report);
-  return result;
+  return made;
 }
 
 }  // namespace tetwright

@@ -4,9 +4,11 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "mesher/cut/sheet_faces.h"
 #include "mesher/cut/thin_wall_recovery.h"
 #include "mesher/domain/material_field.h"
 #include "mesher/domain/refinement_regions.h"
@@ -53,6 +55,12 @@ int max_possible_refinement(const GridFrame& frame, double max_coordinate);
 /// Converts to input units.
 ThickenedWallsReport thickened_report(const ThickenedWalls& left, const GridFrame& frame);
 
+/// A mesh of a field, without the faces of sheets.
+struct FieldMesh {
+  DenseMesh dense;
+  std::optional<SheetParts> parts;  ///< if the field has sheets
+};
+
 /// Meshes a field: builds the octree and the lattice, moves points, cuts tets, and transforms the result to
 /// input units.
 /// \param interface_voxels of the field
@@ -63,7 +71,7 @@ ThickenedWallsReport thickened_report(const ThickenedWalls& left, const GridFram
 /// \pre the current stage is "octree"
 /// \throws OutputError if the memory does not suffice
 /// \throws Interrupted and whatever `validate_regions` throws
-DenseMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<MortonKey> interface_voxels,
+FieldMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<MortonKey> interface_voxels,
                      RefinementRegions finer, const MesherOptions& options, const MemoryModel& memory,
                      MesherReport report, Stages& stages,
                      const std::function<void(const std::vector<std::uint8_t>&)>& validate_regions);

@@ -82,7 +82,8 @@ DenseMesh mesh_labels(const LabelInput& labels, const MesherOptions& options, Pr
   stages.begin("octree");
   return mesh_field(field, field->interface_voxels(), std::move(thin.finer), options, label_memory(labels),
                     std::move(report), stages,
-                    [&](const std::vector<std::uint8_t>& there) { validate_materials_left(labels, there); });
+                    [&](const std::vector<std::uint8_t>& there) { validate_materials_left(labels, there); })
+      .dense;
 }
 
 }  // namespace tetwright

@@ -195,14 +195,15 @@ class SurfaceMeshing {
     find_thin();
     report_.sheets = expected_sheets(input_);
     expect_materials(input_, *bodies_.field, interface_voxels_, thin_.finer.refinement > 0, report_);
-    DenseMesh dense =
+    FieldMesh made =
         mesh_field(bodies_.field, std::move(interface_voxels_), std::move(thin_.finer), options_,
                    MemoryModel{}, std::move(report_), stages_, [&](const std::vector<std::uint8_t>& there) {
                      validate_materials_left(input_, *bodies_.field, there);
                    });
 
+    DenseMesh dense = std::move(made.dense);
     settle_features(input_, features_, dense);
-    if (has_features(input_, features_)) fit_features(dense);
+    if (has_features(input_, features_)) fit_features(dense, made.parts ? &*made.parts : nullptr);
     dense.surface = std::make_shared<const TriangleMesh>(all_surfaces(input_));
     if (!input_.holes.empty())
       dense.caps = std::make_shared<const SurfaceCapFaces>(input_, bodies_.caps, dense.report.cell_size);
@@ -281,14 +282,18 @@ class SurfaceMeshing {
   }
 
   /// Moves points onto creases, corners and junctions, and names the patches of boundary faces.
-  void fit_features(DenseMesh& dense) {
+  /// \param parts if there are sheets, whose faces are added
+  void fit_features(DenseMesh& dense, SheetParts* parts) {
     stages_.begin("creases");
     const double cell = dense.report.cell_size;
     const auto features = std::make_shared<const FeatureSurface>(input_, features_.bodies,
                                                                  CellTuning::Patches::corner_reach * cell,
                                                                  dense.field, features_.sheets, bodies_.caps);
-    if (input_.complex && input_.complex->sheets.empty())
-      collapse_strips(dense.mesh, *input_.complex, *features, cell);
+    if (input_.complex) collapse_strips(dense.mesh, *input_.complex, *features, cell, parts);
+    if (parts) {
+      const std::vector<InterfaceTriangle> sheets = sheet_faces(dense.mesh, *parts);
+      dense.mesh.interfaces.insert(dense.mesh.interfaces.end(), sheets.begin(), sheets.end());
+    }
     fit_creases(dense.mesh, *features, *bodies_.field, cell);
     measure_walls(dense, *bodies_.field);
     for (const InterfaceTriangle& t : dense.mesh.interfaces)

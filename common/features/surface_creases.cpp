@@ -33,7 +33,8 @@ constexpr double corner_turn = 45 * 3.14159265358979323846 / 180;
 /// Crease segments at each point; finds the corners among the points.
 class CreasePoints {
  public:
-  CreasePoints(std::span<const Vec3> points, const std::vector<SurfaceCreases::Segment>& segments)
+  CreasePoints(std::span<const Vec3> points, const std::vector<SurfaceCreases::Segment>& segments,
+               std::span<const std::uint8_t> rough)
       : points_(points) {
     for (std::size_t i = 0, j = 0; i < segments.size(); i = j) {
       // Where more than two patches meet, an edge has several segments.
@@ -44,6 +45,7 @@ class CreasePoints {
         AtPoint& at = at_[segments[i].ends[k]];
         if (at.count == 0) at.patches = patches;
         at.mixed |= at.patches != patches;
+        for (const auto& [a, b] : patches) at.rough |= !rough.empty() && (rough[a] || rough[b]);
         if (at.count < 2) at.others[at.count] = segments[i].ends[1 - k];
         ++at.count;
       }
@@ -60,7 +62,7 @@ class CreasePoints {
     for (const auto& [p, at] : at_)
       if (!at.is_plain())
         corners.push_back(p);
-      else if (const double angle = turn_at(p, at, reach); angle > corner_turn)
+      else if (const double angle = at.rough ? 0 : turn_at(p, at, reach); angle > corner_turn)
         turns.push_back({angle, p});
     std::stable_sort(turns.begin(), turns.end(),
                      [](const Turn& x, const Turn& y) { return x.angle > y.angle; });
@@ -81,6 +83,7 @@ class CreasePoints {
     std::vector<std::array<std::uint16_t, 2>> patches;  ///< of the first one, by pairs
     std::array<Index, 2> others{};
     bool mixed = false;
+    bool rough = false;  ///< at a rough patch
     bool is_plain() const { return count == 2 && !mixed; }
   };
 
@@ -116,7 +119,8 @@ class CreasePoints {
 }  // namespace
 
 SurfaceCreases find_creases(std::span<const Vec3> points, std::span<const Triangle> triangles,
-                            std::span<const std::uint16_t> patches, double corner_reach) {
+                            std::span<const std::uint16_t> patches, double corner_reach,
+                            std::span<const std::uint8_t> rough) {
   SurfaceCreases creases;
   const std::vector<EdgeUse> uses = edge_uses(triangles, {});
   for (std::size_t i = 0; i < uses.size();) {
@@ -128,7 +132,7 @@ SurfaceCreases find_creases(std::span<const Vec3> points, std::span<const Triang
         creases.segments.push_back({ends_of(uses[i].key), {*p, *q}});
     i = j;
   }
-  creases.corners = CreasePoints(points, creases.segments).corners(corner_reach);
+  creases.corners = CreasePoints(points, creases.segments, rough).corners(corner_reach);
   return creases;
 }
 

@@ -7,6 +7,7 @@
 
 #include "common/features/edge_uses.h"
 #include "common/features/inner_edges.h"
+#include "common/features/surface_noise.h"
 #include "common/mesh/disjoint_sets.h"
 #include "common/parallel/parallel_sort.h"
 #include "tetwright/error.h"
@@ -39,28 +40,14 @@ std::vector<double> triangle_areas(std::span<const Vec3> points, std::span<const
   return areas;
 }
 
-/// Flags the points on edges between two groups.
-std::vector<std::uint8_t> points_between(const std::vector<EdgeUse>& uses, std::size_t point_count) {
-  std::vector<std::uint8_t> between(point_count, 0);
-  for (std::size_t i = 0; i + 1 < uses.size(); ++i)
-    if (uses[i].key == uses[i + 1].key && uses[i].group != uses[i + 1].group)
-      for (const Index p : ends_of(uses[i].key)) between[p] = 1;
-  return between;
-}
-
-/// Ratio of loose ends to edges that turn by more than the angle, at most 2. A loose end is a point other
-/// than `ends` at which exactly one such edge ends.
-double loose_ends(const std::vector<InnerEdge>& edges, const std::vector<std::uint8_t>& ends, double angle) {
-  std::vector<std::uint32_t> degrees(ends.size(), 0);
-  std::size_t sharp = 0;
-  for (const InnerEdge& e : edges)
-    if (e.turn > angle) {
-      ++sharp;
-      for (const Index p : e.ends) ++degrees[p];
-    }
-  std::size_t loose = 0;
-  for (std::size_t p = 0; p < ends.size(); ++p) loose += degrees[p] == 1 && !ends[p];
-  return sharp == 0 ? 0 : static_cast<double>(loose) / static_cast<double>(sharp);
+/// The fraction of the area in flagged triangles.
+double share_of(const std::vector<std::uint8_t>& flags, const std::vector<double>& areas) {
+  double all = 0, flagged = 0;
+  for (std::size_t t = 0; t < areas.size(); ++t) {
+    all += areas[t];
+    if (flags[t]) flagged += areas[t];
+  }
+  return all > 0 ? flagged / all : 0;
 }
 
 /// Whether all edges that turn by more than the angle turn by 90 degrees and have at most three different
@@ -87,12 +74,7 @@ class PatchMerger {
       if (e.turn <= low_share * angle) sets_.unite(e.triangles[0], e.triangles[1]);
     for (Index t = 0; t < areas_.size(); ++t)
       if (const Index root = sets_.root(t); root != t) areas_[root] += areas_[t];
-    for (const InnerEdge& e : edges) {
-      const Index a = sets_.root(e.triangles[0]), b = sets_.root(e.triangles[1]);
-      if (a == b) continue;
-      for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)})
-        borders_[from][to].add({e.length, e.turn > angle ? e.length : 0});
-    }
+    find_borders(edges, angle);
   }
 
   /// Merges across borders whose sharp fraction is too small.
@@ -105,11 +87,44 @@ class PatchMerger {
       merge(weakest.a, weakest.b);
     }
   }
-  std::size_t count() {
+  std::size_t count() const {
     std::size_t roots = 0;
     for (Index t = 0; t < sets_.size(); ++t) roots += sets_.is_root(t);
     return roots;
   }
+  /// Merges neighbouring parts in which sharp edges are noise.
+  /// \return a flag for each triangle: it is in such a part
+  std::vector<std::uint8_t> merge_noisy(std::span<const Vec3> points, std::span<const Triangle> triangles,
+                                        const std::vector<InnerEdge>& edges,
+                                        const std::vector<std::uint8_t>& on_border, double angle) {
+    std::vector<Index> numbers(sets_.size(), no_index), part(sets_.size());
+    std::vector<double> areas;
+    for (Index t = 0; t < part.size(); ++t) {
+      const Index root = sets_.root(t);
+      if (numbers[root] == no_index) {
+        numbers[root] = static_cast<Index>(areas.size());
+        areas.push_back(areas_[root]);
+      }
+      part[t] = numbers[root];
+    }
+    const std::vector<std::uint8_t> noisy =
+        find_noisy_parts(points, triangles, edges, on_border, part, areas.size(), angle);
+    for (const InnerEdge& e : edges) {
+      const auto& [t, u] = e.triangles;
+      if (!noisy[part[t]] || !noisy[part[u]]) continue;
+      const Index a = sets_.root(t), b = sets_.root(u);
+      if (a == b) continue;
+      sets_.unite(a, b);
+      areas_[std::min(a, b)] += areas_[std::max(a, b)];
+    }
+    borders_.clear();
+    queue_.clear();
+    find_borders(edges, angle);
+    std::vector<std::uint8_t> of_triangles(part.size());
+    for (std::size_t t = 0; t < part.size(); ++t) of_triangles[t] = noisy[part[t]];
+    return of_triangles;
+  }
+  bool has_borders() const { return !borders_.empty(); }
   /// Merges parts below `min_area`, smallest first, with the neighbour across the weakest border.
   /// \return the number of parts merged
   std::size_t merge_small(double min_area) {
@@ -169,6 +184,15 @@ class PatchMerger {
     return {border.sharp_share(), std::min(a, b), std::max(a, b)};
   }
 
+  void find_borders(const std::vector<InnerEdge>& edges, double angle) {
+    for (const InnerEdge& e : edges) {
+      const Index a = sets_.root(e.triangles[0]), b = sets_.root(e.triangles[1]);
+      if (a == b) continue;
+      for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)})
+        borders_[from][to].add({e.length, e.turn > angle ? e.length : 0});
+    }
+  }
+
   void merge(Index a, Index b) {
     sets_.unite(a, b);
     const Index kept = sets_.root(a), gone = kept == a ? b : a;
@@ -207,6 +231,7 @@ std::vector<Index> whole_groups(std::span<const std::uint32_t> groups) {
 struct FoundParts {
   SurfacePatches found;
   std::vector<Index> parts;
+  std::vector<std::uint8_t> noisy;  ///< a flag for each triangle, or empty
 };
 
 FoundParts find_parts(std::span<const Vec3> points, std::span<const Triangle> triangles,
@@ -221,21 +246,27 @@ FoundParts find_parts(std::span<const Vec3> points, std::span<const Triangle> tr
   if (angle.rule == Rule::off || triangles.empty()) return result;
   const std::vector<EdgeUse> uses = edge_uses(triangles, groups);
   const std::vector<InnerEdge> edges = inner_edges(points, triangles, uses);
-  const std::vector<std::uint8_t> between = points_between(uses, points.size());
+  const std::vector<std::uint8_t> on_border = points_on_borders(uses, points.size());
   const bool automatic = angle.rule == Rule::automatic;
   const double sharp = (automatic ? automatic_angle : angle.degrees) * degree;
-  found.loose_ends_low = loose_ends(edges, between, low_share * automatic_angle * degree);
-  found.loose_ends_high = loose_ends(edges, between, automatic_angle * degree);
+  found.loose_ends_low = loose_ends(edges, on_border, low_share * automatic_angle * degree);
+  found.loose_ends_high = loose_ends(edges, on_border, automatic_angle * degree);
   if (std::none_of(edges.begin(), edges.end(), [&](const InnerEdge& e) { return e.turn > sharp; })) {
     found.verdict = Verdict::smooth;
     return result;
   }
-  if (automatic && (found.loose_ends_low > max_loose_low || found.loose_ends_high > max_loose_high)) {
-    found.verdict = Verdict::scan;
-    return result;
-  }
+  const bool noisy =
+      automatic && (found.loose_ends_low > max_loose_low || found.loose_ends_high > max_loose_high);
   PatchMerger merger(triangle_areas(points, triangles), edges, sharp);
   merger.merge_weak();
+  if (noisy) {
+    result.noisy = merger.merge_noisy(points, triangles, edges, on_border, sharp);
+    found.noisy_share = share_of(result.noisy, triangle_areas(points, triangles));
+    if (!merger.has_borders()) {
+      found.verdict = Verdict::scan;
+      return result;
+    }
+  }
   // Decided before small parts are merged, since merging depends on the cell size.
   const std::size_t count = merger.count();
   if (automatic && count >= min_staircase_patches &&
@@ -248,6 +279,15 @@ FoundParts find_parts(std::span<const Vec3> points, std::span<const Triangle> tr
   found.dropped = merger.merge_small(options.min_area);
   result.parts = merger.parts();
   return result;
+}
+
+/// Flags the patches that contain flagged triangles.
+std::vector<std::uint8_t> rough_patches(const SurfacePatches& found, const std::vector<std::uint8_t>& noisy) {
+  if (std::find(noisy.begin(), noisy.end(), 1) == noisy.end() || !found.any()) return {};
+  std::vector<std::uint8_t> rough(found.count, 0);
+  for (std::size_t t = 0; t < noisy.size(); ++t)
+    if (noisy[t]) rough[found.patches[t]] = 1;
+  return rough;
 }
 
 [[noreturn]] void throw_too_many(const std::string& file) {
@@ -274,6 +314,7 @@ SurfacePatches find_patches(std::span<const Vec3> points, std::span<const Triang
     found.found.patches[t] = static_cast<std::uint16_t>(number);
   }
   found.found.count = std::max(count, 1U);
+  found.found.rough = rough_patches(found.found, found.noisy);
   return std::move(found.found);
 }
 

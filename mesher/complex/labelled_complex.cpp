@@ -329,7 +329,6 @@ class ComplexBuilder {
       const auto sheet_face = [&](std::size_t k) {
         return static_cast<Index>(edges[k].triangle - out.faces.size());
       };
-      if (sheets > 0) find_meeting(edges, j - sheets, j);
       if (sheets == 2 && part_of_[sheet_face(j - 2)] == part_of_[sheet_face(j - 1)])
         components.unite(sheet_face(j - 2), sheet_face(j - 1));
     }
@@ -339,21 +338,6 @@ class ComplexBuilder {
       if (root == f) number[f] = out.sheet_components++;
       out.sheets[f].component = number[root];
     }
-  }
-
-  /// Notes that an edge is in more sheets than one.
-  void find_meeting(const std::vector<EdgeUse>& edges, std::size_t begin, std::size_t end) {
-    const LabelledComplex& out = result_.complex;
-    const auto face = [&](std::size_t k) { return edges[k].triangle - out.faces.size(); };
-    if (result_.sheets_meet || end - begin < 2) return;
-    if (end - begin == 2 && part_of_[face(begin)] == part_of_[face(begin + 1)]) return;
-    std::uint32_t low = out.sheets[face(begin)].sheet, high = low;
-    for (std::size_t k = begin; k < end; ++k) {
-      low = std::min(low, out.sheets[face(k)].sheet);
-      high = std::max(high, out.sheets[face(k)].sheet);
-    }
-    const auto [p, q] = ends_of(edges[begin].key);
-    result_.sheets_meet = {low, high, (at(p) + at(q)) / 2};
   }
 
   /// Adds a triangle of a sheet unless it is outside or on a face.

@@ -97,12 +97,6 @@ struct SheetFate {
   SheetLoss repeated;  ///< on another sheet
 };
 
-/// Where sheets cross, branch, or share a border.
-struct SheetMeeting {
-  std::uint32_t first, second;  ///< sheets; may be the same one
-  Vec3 place;                   ///< input units
-};
-
 struct ComplexResult {
   LabelledComplex complex;
   /// Each body's own surface as it is in the complex, before later bodies carve it, but without what earlier
@@ -118,7 +112,6 @@ struct ComplexResult {
   std::vector<char> lost;             ///< by body: nothing of it is left after carving
   std::optional<Vec3> inconsistent;   ///< a point where the cells contradict the bodies' orientation
   std::vector<SheetFate> sheets;      ///< by sheet
-  std::optional<SheetMeeting> sheets_meet;
 };
 
 /// The sheets among imprinted surfaces: those after the bodies.

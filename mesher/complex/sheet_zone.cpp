@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/features/edge_uses.h"
 #include "common/geometry/point_triangle.h"
 #include "common/geometry/triangle_distance.h"
 #include "common/parallel/parallel_sort.h"
@@ -22,9 +21,8 @@ using Zone = ComplexTuning::Zone;
 }  // namespace
 
 SheetZone::SheetZone(const LabelledComplex& complex, const GridFrame& voxels)
-    : components_(complex.sheet_components) {
+    : components_(complex.sheet_components), branches_(complex, voxels) {
   add_faces(complex, voxels);
-  find_adjacent(complex);
   find_voxels(voxels);
 }
 
@@ -65,25 +63,6 @@ void SheetZone::add_faces(const LabelledComplex& complex, const GridFrame& voxel
     const std::vector<Index> order = median_order(boxes, middles, Zone::leaf_size);
     component.tree = BoxTree(order.size(), Zone::leaf_size, [&](std::size_t i) { return boxes[order[i]]; });
     for (const Index i : order) component.faces.push_back(faces[c][i]);
-  }
-}
-
-void SheetZone::find_adjacent(const LabelledComplex& complex) {
-  std::vector<Triangle> triangles;
-  for (const LabelledComplex::SheetFace& f : complex.sheets) triangles.push_back(f.ids);
-  const std::vector<EdgeUse> uses = edge_uses(triangles, {});
-  for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
-    while (j < uses.size() && uses[j].key == uses[i].key) ++j;
-    for (std::size_t k = i; k < j; ++k)
-      for (std::size_t l = i; l < j; ++l) {
-        const std::uint32_t a = complex.sheets[uses[k].triangle].component,
-                            b = complex.sheets[uses[l].triangle].component;
-        if (a != b) components_[a].adjacent.push_back(b);
-      }
-  }
-  for (Component& c : components_) {
-    std::sort(c.adjacent.begin(), c.adjacent.end());
-    c.adjacent.erase(std::unique(c.adjacent.begin(), c.adjacent.end()), c.adjacent.end());
   }
 }
 
@@ -144,7 +123,6 @@ SheetZone::Foot SheetZone::nearest(const Component& component, const Vec3& point
 
 void SheetZone::find(const Vec3& point, std::vector<Near>& out) const {
   out.clear();
-  std::vector<Vec3> targets;
   for (std::uint32_t c = 0; c < components_.size(); ++c) {
     const Component& component = components_[c];
     if (!component.box.contains(point)) continue;
@@ -157,20 +135,8 @@ void SheetZone::find(const Vec3& point, std::vector<Near>& out) const {
     if (length > tolerance::smallest_distance) near.ahead_gradient = foot.away / near.ahead;
     if (distance > tolerance::smallest_distance) near.away = own.away / distance;
     out.push_back(near);
-    // Just inside the nearest triangle, off the edges that it shares with other sheets.
-    const auto& [a, b, d] = own.face->corners;
-    const Vec3 at = point - own.away, inwards = (a + b + d) / 3 - at;
-    targets.push_back(at + std::min(0.5, SheetLengths::step_inside / inwards.norm()) * inwards);
   }
-  for (std::size_t k = 0; k < out.size(); ++k)
-    for (const std::uint32_t other : components_[out[k].component].adjacent) {
-      const auto between = std::lower_bound(out.begin(), out.end(), other,
-                                            [](const Near& n, std::uint32_t c) { return n.component < c; });
-      if (between == out.end() || between->component != other || between->distance >= SheetLengths::reach)
-        continue;
-      const Foot foot = nearest(components_[other], targets[k], true);
-      if (foot.face && (side(foot) > 0) != between->in_front()) out[k].visible = false;
-    }
+  branches_.hide(point, 2 * SheetLengths::reach, out);
 }
 
 bool SheetZone::is_in(std::uint32_t component, RegionIndex region) const {

@@ -8,6 +8,7 @@
 #include "common/geometry/box_tree.h"
 #include "common/geometry/morton.h"
 #include "mesher/complex/labelled_complex.h"
+#include "mesher/complex/sheet_branches.h"
 #include "mesher/domain/grid_frame.h"
 
 namespace tetwright {
@@ -17,18 +18,7 @@ namespace tetwright {
 /// coordinates; immutable, all functions may be called concurrently.
 class SheetZone {
  public:
-  /// How a point lies to a component of the sheets.
-  struct Near {
-    std::uint32_t component;
-    double ahead;  ///< distance from the continued sheet, positive in front of it
-    Vec3 ahead_gradient;
-    double distance;  ///< from the sheet itself
-    Vec3 away;        ///< gradient of the distance
-    /// False where another sheet, which meets this one, is between the point and this one.
-    bool visible;
-
-    bool in_front() const { return ahead > 0; }
-  };
+  using Near = NearSheet;
 
   /// \pre the complex has sheets
   SheetZone(const LabelledComplex& complex, const GridFrame& voxels);
@@ -37,6 +27,7 @@ class SheetZone {
   void find(const Vec3& point, std::vector<Near>& out) const;
   /// True if the component has faces in the region.
   bool is_in(std::uint32_t component, RegionIndex region) const;
+  const SheetBranches& branches() const { return branches_; }
   /// Distance, voxels, up to which points have a side.
   static double reach();
   /// The voxels through which sheets pass, as ascending Morton keys.
@@ -50,10 +41,9 @@ class SheetZone {
   };
   struct Component {
     BoxTree tree;
-    std::vector<Face> faces;              ///< in the order of the tree
-    Box3 box;                             ///< within which points may be near
-    std::vector<RegionIndex> regions;     ///< ascending
-    std::vector<std::uint32_t> adjacent;  ///< components that share an edge, ascending
+    std::vector<Face> faces;           ///< in the order of the tree
+    Box3 box;                          ///< within which points may be near
+    std::vector<RegionIndex> regions;  ///< ascending
   };
   struct Foot {
     double squared;
@@ -62,12 +52,12 @@ class SheetZone {
   };
 
   void add_faces(const LabelledComplex& complex, const GridFrame& voxels);
-  void find_adjacent(const LabelledComplex& complex);
   void find_voxels(const GridFrame& voxels);
   static Foot nearest(const Component& component, const Vec3& point, bool continued);
   static double side(const Foot& foot) { return foot.face->normal.dot(foot.away); }
 
   std::vector<Component> components_;
+  SheetBranches branches_;
   std::vector<MortonKey> voxels_;
 };
 

@@ -36,6 +36,7 @@ void add_sheets(const MesherInput& input, const SheetPatches& of_sheets, Complex
     if (added) {
       out.sheet_of_patch.push_back(sheet_of(face));
       out.groups.push_back(group);
+      out.rough.push_back(0);
       require_numbers(out.groups.size(), input);
     }
     return known->second;
@@ -81,12 +82,16 @@ ComplexPatches complex_patches(const MesherInput& input, const std::vector<Surfa
       if (const SurfaceRegion& own = body.groups[body.surface.groups[s.triangle]]) group = own;
     }
     std::sort(of_bodies.begin(), of_bodies.end());
+    const bool rough = std::any_of(of_bodies.begin(), of_bodies.end(), [&](const BodyPatch& p) {
+      return !patches[p.first].rough.empty() && patches[p.first].rough[p.second];
+    });
     const auto [number, added] =
         numbers.try_emplace({sheet, std::move(of_bodies)}, static_cast<std::uint16_t>(numbers.size()));
     require_numbers(numbers.size(), input);
     if (added) {
       out.sheet_of_patch.push_back(sheet);
       out.groups.push_back(group);
+      out.rough.push_back(rough);
     }
     out.patches.push_back(number->second);
   }

@@ -31,6 +31,7 @@ struct ComplexPatches {
   /// Surface region of the input that each patch belongs to, or none. Where two bodies have one, that of the
   /// later body.
   std::vector<SurfaceRegion> groups;
+  std::vector<std::uint8_t> rough;  ///< of each patch, see SurfacePatches::rough
 };
 
 /// The patches of inner sheets.

@@ -44,7 +44,8 @@ FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<Surfa
 }
 
 void FeatureSurface::add_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
-                                   const std::vector<std::uint16_t>& patches, Patch first_patch,
+                                   const std::vector<std::uint16_t>& patches,
+                                   const std::vector<std::uint8_t>& rough, Patch first_patch,
                                    double corner_reach, Items& items) {
   const auto first = static_cast<Index>(items.points.size());
   const auto patch_of = [&](std::uint16_t local) { return static_cast<Patch>(first_patch + local); };
@@ -55,7 +56,7 @@ void FeatureSurface::add_triangles(const std::vector<Vec3>& points, const std::v
     items.triangles.push_back({{first + c[0], first + c[1], first + c[2]},
                                {patch, static_cast<std::uint32_t>(sheet_of_patch_[patch]), 0}});
   }
-  const SurfaceCreases found = find_creases(points, triangles, patches, corner_reach);
+  const SurfaceCreases found = find_creases(points, triangles, patches, corner_reach, rough);
   std::map<Index, std::set<Patch>> at_corners;
   for (const Index c : found.corners) at_corners[c] = {};
   for (const SurfaceCreases::Segment& s : found.segments) {
@@ -109,8 +110,8 @@ void FeatureSurface::add_bodies(const MesherInput& input, const std::vector<Surf
     for (std::size_t t = 0; t < surface.groups.size(); ++t)
       groups_[first_patch + patches[b].patches[t]] = input.bodies[b].groups[surface.groups[t]];
     const std::size_t first_item = items.triangles.size();
-    add_triangles(surface.points, surface.triangles, patches[b].patches, static_cast<Patch>(first_patch),
-                  corner_reach, items);
+    add_triangles(surface.points, surface.triangles, patches[b].patches, patches[b].rough,
+                  static_cast<Patch>(first_patch), corner_reach, items);
     if (b < caps.size()) add_caps(caps[b], first_item, items.points, items.triangles);
   }
 }
@@ -123,7 +124,7 @@ void FeatureSurface::add_complex(const MesherInput& input, const std::vector<Sur
   first_continued_ = found.first_continued;
   sheet_of_patch_ = found.sheet_of_patch;
   groups_ = found.groups;
-  add_triangles(found.points, found.triangles, found.patches, 0, corner_reach, items);
+  add_triangles(found.points, found.triangles, found.patches, found.rough, 0, corner_reach, items);
 }
 
 std::optional<std::size_t> FeatureSurface::sheet_of(const InterfaceTriangle& face) const {

@@ -122,8 +122,8 @@ class FeatureSurface : public ReferenceSurface {
                   const std::vector<TriangleMesh>& caps, Items& items);
   /// Adds triangles with their patches, and the creases between these.
   void add_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
-                     const std::vector<std::uint16_t>& patches, Patch first_patch, double corner_reach,
-                     Items& items);
+                     const std::vector<std::uint16_t>& patches, const std::vector<std::uint8_t>& rough,
+                     Patch first_patch, double corner_reach, Items& items);
 
   std::map<MaterialTag, std::size_t> bodies_;  ///< body of each material and layer
   /// Sheet of each pair of regions of the complex, ascending; empty without a complex.

@@ -20,20 +20,27 @@ namespace {
 using Strips = CutTuning::Strips;
 using Labelling = CutTuning::Labelling;
 
-/// Edges of the complex at which faces of four or more pairs of regions meet.
+/// Edges of the complex at which four or more sheets meet: faces of as many pairs of regions, or sheets
+/// inside a region.
 ProjectionTree branching_curves(const LabelledComplex& complex) {
   std::vector<Triangle> triangles;
   for (const LabelledComplex::Face& f : complex.faces) triangles.push_back(f.ids);
+  for (const LabelledComplex::SheetFace& f : complex.sheets) triangles.push_back(f.ids);
   const std::vector<EdgeUse> uses = edge_uses(triangles, {});
   std::vector<Vec3> points;
   std::vector<ProjectionTree::Item> segments;
   for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
     std::set<std::pair<RegionIndex, RegionIndex>> pairs;
+    std::size_t inner = 0;
     for (; j < uses.size() && uses[j].key == uses[i].key; ++j) {
+      if (uses[j].triangle >= complex.faces.size()) {
+        ++inner;
+        continue;
+      }
       const LabelledComplex::Face& f = complex.faces[uses[j].triangle];
       pairs.insert(std::minmax(f.behind, f.front));
     }
-    if (pairs.size() < Strips::min_sheets) continue;
+    if (pairs.size() + inner < Strips::min_sheets) continue;
     const auto first = static_cast<Index>(points.size());
     for (const Index p : ends_of(uses[i].key)) points.push_back(complex.points[p]);
     segments.push_back({{first, first + 1, first + 1}, {}});
@@ -43,8 +50,9 @@ ProjectionTree branching_curves(const LabelledComplex& complex) {
 
 class StripCollapse {
  public:
-  StripCollapse(TetMesh& mesh, const FeatureSurface& surface, const ProjectionTree& curves, double cell)
-      : mesh_(mesh), surface_(surface), curves_(curves), cell_(cell) {}
+  StripCollapse(TetMesh& mesh, const FeatureSurface& surface, const ProjectionTree& curves, double cell,
+                SheetParts* parts)
+      : mesh_(mesh), surface_(surface), curves_(curves), cell_(cell), parts_(parts) {}
 
   /// \param all whether edges that do not cross their strip are collapsed, too: what is left of strips has
   ///   all its points on the curve
@@ -64,6 +72,10 @@ class StripCollapse {
 
   const Vec3& at(Index p) const { return mesh_.points[p]; }
   bool is_real(const Tet& t) const { return t[3] != beyond_; }
+  MaterialOrOutside label(Index t) const {
+    if (!is_real(tets_[t])) return {};
+    return parts_ ? MaterialTag{parts_->of_tets[t]} : mesh_.materials[t];
+  }
   static bool has(const Tet& t, Index p) { return std::find(t.begin(), t.end(), p) != t.end(); }
 
   /// Faces near a branching curve between regions that have no sheet near them.
@@ -74,6 +86,23 @@ class StripCollapse {
       if (!curves_.any_within(middle, Strips::curve_reach * cell_)) continue;
       const auto sheet = surface_.sheet_of(f);
       if (!sheet || !surface_.nearest(middle, *sheet, Strips::sheet_reach * cell_)) found.push_back(f.ids);
+    }
+    if (!parts_) return found;
+    const SheetedField& field = *parts_->field;
+    const SheetBranches& branches = field.base().sheets()->branches();
+    for (const PartFace& f : part_faces(mesh_, *parts_)) {
+      const SheetedField::Part &a = field.part(parts_->of_tets[f.first]),
+                               &b = field.part(parts_->of_tets[f.second]);
+      if (a.region != b.region) continue;
+      const auto side = [](const SheetedField::Part& part) {
+        return [&part](std::uint32_t component) -> std::optional<bool> {
+          const SheetSides::Side* own = part.sides.of(component);
+          return own ? std::optional(own->in_front) : std::nullopt;
+        };
+      };
+      const Vec3 middle = (at(f.ids[0]) + at(f.ids[1]) + at(f.ids[2])) / 3;
+      if (branches.face_across(field.voxels().to_grid(middle), Strips::curve_reach, side(a), side(b)))
+        found.push_back(f.ids);
     }
     return found;
   }
@@ -99,8 +128,7 @@ class StripCollapse {
     removed_.assign(tets_.size(), 0);
     for (const auto& [p, tets] : at_) {
       Regions& own = regions_[p];
-      for (const Index t : tets)
-        own.insert(is_real(tets_[t]) ? MaterialOrOutside(mesh_.materials[t]) : std::nullopt);
+      for (const Index t : tets) own.insert(label(t));
     }
   }
 
@@ -255,8 +283,10 @@ class StripCollapse {
     for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
       if (removed_[t]) continue;
       mesh_.tets[count] = tets_[t];
+      if (parts_) parts_->of_tets[count] = parts_->of_tets[t];
       mesh_.materials[count++] = mesh_.materials[t];
     }
+    if (parts_) parts_->of_tets.resize(count);
     mesh_.tets.resize(count);
     mesh_.materials.resize(count);
     std::vector<Index> number(mesh_.points.size(), no_index);
@@ -278,6 +308,7 @@ class StripCollapse {
   const FeatureSurface& surface_;
   const ProjectionTree& curves_;
   double cell_;
+  SheetParts* parts_;
   Index beyond_ = no_index;
   std::vector<Tet> tets_;                   ///< those of the mesh, then those of the boundary's faces
   std::vector<char> removed_;               ///< by tet
@@ -289,12 +320,12 @@ class StripCollapse {
 }  // namespace
 
 void collapse_strips(TetMesh& mesh, const LabelledComplex& complex, const FeatureSurface& surface,
-                     double cell) {
+                     double cell, SheetParts* parts) {
   const ProjectionTree curves = branching_curves(complex);
   if (curves.empty()) return;
   bool all = false;
   for (int round = 0; round < Strips::max_rounds; ++round) {
-    if (StripCollapse(mesh, surface, curves, cell).run(all)) continue;
+    if (StripCollapse(mesh, surface, curves, cell, parts).run(all)) continue;
     if (all) return;
     all = true;
   }

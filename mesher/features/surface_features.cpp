@@ -131,10 +131,11 @@ void report_features(const MesherInput& input, const std::vector<SurfacePatches>
                        patches[b].verdict != SurfacePatches::Verdict::intersecting;
     if (patches[b].any() && exact && !input.complex)
       report.creases.add(find_creases(surface.points, surface.triangles, patches[b].patches,
-                                      CellTuning::Patches::corner_reach * report.cell_size),
+                                      CellTuning::Patches::corner_reach * report.cell_size, patches[b].rough),
                          surface.points);
     report.features.push_back({input.bodies[b].name, patches[b]});
     report.features.back().found.patches = {};
+    report.features.back().found.rough = {};
   }
 }
 
@@ -151,7 +152,7 @@ void report_complex_creases(const MesherInput& input, const std::vector<SurfaceP
   }
   for (std::size_t s = 0; s < triangles.size(); ++s)
     report.creases.add(find_creases(input.complex->points, triangles[s], of_triangles[s],
-                                    CellTuning::Patches::corner_reach * report.cell_size),
+                                    CellTuning::Patches::corner_reach * report.cell_size, found.rough),
                        input.complex->points);
 }
 

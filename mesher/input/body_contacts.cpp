@@ -130,18 +130,6 @@ void report_sheets(const std::vector<SheetFate>& fates, MesherInput& input) {
   }
 }
 
-/// \throws InputError
-[[noreturn]] void refuse_meeting(const SheetMeeting& meeting, const MesherInput& input) {
-  const std::string first = "'" + input.sheets[meeting.first].group.name + "'",
-                    second = "'" + input.sheets[meeting.second].group.name + "'";
-  throw InputError(
-      input.sheets[meeting.second].file, 0,
-      (meeting.first == meeting.second ? "the sheet " + first + " branches or crosses itself"
-                                       : "the sheets " + first + " and " + second + " meet") +
-          " at " + place_text(meeting.place) +
-          ", and only sheets that are apart can be meshed; separate them there, or leave one out");
-}
-
 MaterialTag free_tag(const MesherInput& input) {
   std::set<MaterialTag> used;
   for (const MesherInput::Body& body : input.bodies) used.insert(body.tag);
@@ -226,7 +214,6 @@ void join_bodies(MesherInput& input, const SheetSoup& sheets, const ContactOptio
   // Meshing refuses a body that later ones cover as a whole.
   if (std::count(found.lost.begin(), found.lost.end(), 1) > 0) return;
   report_sheets(found.sheets, input);
-  if (found.sheets_meet) refuse_meeting(*found.sheets_meet, input);
   for (const BodyOverlap& o : found.overlaps) add_overlap(o, options.overlap, input);
   add_common_volumes(found, input);
   for (const BodyContact& c : found.contacts)

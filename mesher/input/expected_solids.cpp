@@ -5,6 +5,7 @@
 
 #include "common/geometry/self_intersection.h"
 #include "common/geometry/surface_tree.h"
+#include "mesher/complex/labelled_complex.h"
 #include "mesher/tuning/input_tuning.h"
 #include "tetwright/sheets.h"
 

@@ -40,7 +40,7 @@ void measure(HoleRim& rim, const std::vector<Vec3>& points) {
       std::all_of(balance.begin(), balance.end(), [](const auto& item) { return item.second == 0; });
 }
 
-Triangle sorted(Triangle t) {
+Triangle with_ascending_points(Triangle t) {
   std::sort(t.begin(), t.end());
   return t;
 }
@@ -233,13 +233,13 @@ class FlatCapFinder {
     }
     std::set<Triangle> own;
     for (const FlatCap& cap : caps_)
-      for (const Triangle& t : cap.triangles) own.insert(sorted(t));
+      for (const Triangle& t : cap.triangles) own.insert(with_ascending_points(t));
     std::set<Triangle> there;
     for (const Triangle& t : triangles_)
-      if (const Triangle key = sorted(t); own.contains(key)) there.insert(key);
+      if (const Triangle key = with_ascending_points(t); own.contains(key)) there.insert(key);
     for (FlatCap& cap : caps_)
       cap.kept &= std::none_of(cap.triangles.begin(), cap.triangles.end(),
-                               [&](const Triangle& t) { return there.contains(sorted(t)); });
+                               [&](const Triangle& t) { return there.contains(with_ascending_points(t)); });
   }
 
   void drop_intersecting() {

@@ -19,7 +19,7 @@ class WallDistances {
   virtual int depth(const std::array<int, 3>& voxel) const = 0;
   /// The voxels whose distances are replaced, ascending Morton keys.
   virtual std::vector<MortonKey> covered() const = 0;
-  /// Those of them that contain a thin wall or gap, ascending.
+  /// The covered voxels that contain a thin wall or gap, ascending.
   virtual const std::vector<MortonKey>& core() const = 0;
   /// The signed distance at a point of a covered voxel, clamped to the band.
   virtual double changed_distance(const Vec3& point, int depth, Vec3& gradient) const = 0;

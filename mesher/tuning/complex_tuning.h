@@ -85,9 +85,9 @@ struct ComplexTuning {
     /// Length of the strips that continue sheets beyond their borders, voxels: the reach, also at corners
     /// where the gap between two strips is filled by chords.
     static constexpr double continued = 2 * reach;
-    /// Distance from an edge, voxels, at which the side of another sheet at that edge is certain: well above
-    /// rounding, and below the size of facets.
-    static constexpr double step_inside = 1e-3;
+    /// Beyond the end of a curve in which sheets meet by more than this, voxels, there is no curve: half the
+    /// distance of points on it.
+    static constexpr double beyond_curve = 0.25;
   };
 };
 

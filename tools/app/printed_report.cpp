@@ -78,6 +78,9 @@ std::string feature_line(const FeatureReport& f) {
       break;
     case Verdict::part:
       line += text("%zu patches with sharp edges between them", f.found.count);
+      if (f.found.noisy_share > 0)
+        line +=
+            text("; on %.3g % of the area", 100 * f.found.noisy_share) + " edges look like those of a scan";
       break;
   }
   return printable(line);

@@ -156,7 +156,7 @@ void compare_creases_of(TetMesh& mesh, const MesherInput& surfaces, const OpenEd
     if (s.intersects_itself)
       c.creases_left_out |= patches.any();
     else if (patches.any())
-      expected.add(find_creases(s.points, s.triangles, patches.patches), s.points);
+      expected.add(find_creases(s.points, s.triangles, patches.patches, 0, patches.rough), s.points);
   }
   if (expected.segments.empty()) return;
   of_surfaces.push_back(expected);

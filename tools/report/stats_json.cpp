@@ -240,7 +240,8 @@ nlohmann::json features_json(const std::vector<FeatureReport>& all) {
                  {"verdict", verdicts[static_cast<std::size_t>(f.found.verdict)]},
                  {"patches", f.found.count},
                  {"dropped_patches", f.found.dropped},
-                 {"loose_ends", {f.found.loose_ends_low, f.found.loose_ends_high}}});
+                 {"loose_ends", {f.found.loose_ends_low, f.found.loose_ends_high}},
+                 {"noisy_share", f.found.noisy_share}});
   return j;
 }
 

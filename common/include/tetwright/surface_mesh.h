@@ -93,7 +93,7 @@ struct SurfacePatches {
   enum class Verdict : std::uint8_t {
     off,           ///< not searched
     smooth,        ///< no edge turns far enough
-    scan,          ///< sharp edges end anywhere, as in noise
+    scan,          ///< sharp edges end anywhere, as in noise, on all of the surface
     intersecting,  ///< not searched: the surface intersects itself
     meeting,       ///< discarded: the surface meets another one, or itself where gaps are closed
     staircase,     ///< creases nearly everywhere, as on the faces of voxels
@@ -104,10 +104,14 @@ struct SurfacePatches {
   /// verdict is `part` or groups were given.
   std::vector<std::uint16_t> patches;
   std::size_t count = 1;
+  /// A flag for each patch, or empty: its sharp edges are noise, so that creases at its border turn anywhere.
+  std::vector<std::uint8_t> rough;
   std::size_t dropped = 0;  ///< patches below PatchOptions::min_area, merged with neighbours
   /// Number of loose ends of edges that turn by more than 15 and 35 degrees, divided by the number of these
   /// edges; 2 if no two of them meet.
   double loose_ends_low = 0, loose_ends_high = 0;
+  /// Fraction of the area where sharp edges are noise and no creases.
+  double noisy_share = 0;
 
   bool any() const { return count > 1; }
 };
@@ -117,9 +121,10 @@ struct SurfacePatches {
 /// and creases that fade out within a patch disappear. A plain threshold would let patches leak through every
 /// edge that turns slightly less.
 ///
-/// Automatic: creases of a mechanical part end at other creases, sharp edges due to noise end anywhere. A
-/// surface is a part unless there are more than 9 loose ends per 100 edges that turn by 15 degrees, or more
-/// than 20 per 100 edges that turn by 35.
+/// Automatic: creases of a mechanical part end at other creases or at borders, sharp edges due to noise end
+/// anywhere. There is no noise unless there are more than 9 loose ends per 100 edges that turn by 15 degrees,
+/// or more than 20 per 100 edges that turn by 35. If there is, the same test decides for each patch, and
+/// small patches beside noise belong to it.
 ///
 /// Edges at which a group does not have exactly two triangles are borders, as are edges between triangles of
 /// opposite orientation. Triangles without area belong to a neighbour's patch. O(n log n); the result does
@@ -157,8 +162,10 @@ struct SurfaceCreases {
 /// \param corner_reach the turn of a crease is measured between the chords to the nearest points at least
 ///   this far away along it (0: the neighbouring points). Only one such corner is kept within that distance,
 ///   so that a zigzag from triangle to triangle has none
+/// \param rough SurfacePatches::rough; turns of creases at such patches are no corners
 SurfaceCreases find_creases(std::span<const Vec3> points, std::span<const Triangle> triangles,
-                            std::span<const std::uint16_t> patches, double corner_reach = 0);
+                            std::span<const std::uint16_t> patches, double corner_reach = 0,
+                            std::span<const std::uint8_t> rough = {});
 
 /// Creases and corners as polylines, for comparisons.
 struct CreaseCurves {

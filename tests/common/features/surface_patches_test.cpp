@@ -96,6 +96,75 @@ TEST(SurfacePatches, AreNotLookedForOnScans) {
   EXPECT_FALSE(patches_of(unit_cube(), off).any());
 }
 
+/// A square plate with flat sides and base, whose upper side is noise.
+TriangleMesh terrain(Index n) {
+  Random random(5);
+  TriangleMesh s;
+  const auto add_grid = [&](const Vec3& origin, const Vec3& u, const Vec3& v, double noise) {
+    const auto first = static_cast<Index>(s.points.size());
+    for (Index i = 0; i <= n; ++i)
+      for (Index j = 0; j <= n; ++j)
+        s.points.emplace_back(origin + (i * u + j * v) / n + Vec3(0, 0, noise * (random.uniform() - 0.5)));
+    for (Index i = 0; i < n; ++i)
+      for (Index j = 0; j < n; ++j) {
+        const Index a = first + i * (n + 1) + j, b = a + n + 1;
+        s.triangles.push_back({a, b, b + 1});
+        s.triangles.push_back({a, b + 1, a + 1});
+      }
+  };
+  add_grid(Vec3(0, 0, 1), Vec3::UnitX(), Vec3::UnitY(), 0.4 / n);
+  // The walls hang from the points of the rim.
+  std::vector<Index> rim;
+  for (Index i = 0; i < n; ++i) rim.push_back(i * (n + 1));
+  for (Index j = 0; j < n; ++j) rim.push_back(n * (n + 1) + j);
+  for (Index i = n; i > 0; --i) rim.push_back(i * (n + 1) + n);
+  for (Index j = n; j > 0; --j) rim.push_back(j);
+  const auto first = static_cast<Index>(s.points.size()), count = static_cast<Index>(rim.size());
+  for (const Index p : rim) s.points.emplace_back(s.points[p].x(), s.points[p].y(), 0);
+  for (Index k = 0; k < count; ++k) {
+    const Index a = rim[k], b = rim[(k + 1) % count], c = first + k, d = first + (k + 1) % count;
+    s.triangles.push_back({a, c, d});
+    s.triangles.push_back({a, d, b});
+  }
+  const auto middle = static_cast<Index>(s.points.size());
+  s.points.emplace_back(0.5, 0.5, 0);
+  for (Index k = 0; k < count; ++k) s.triangles.push_back({first + (k + 1) % count, first + k, middle});
+  return s;
+}
+
+TEST(SurfacePatches, OfANoisySurfaceAreItsFlatParts) {
+  const TriangleMesh s = terrain(24);
+  const SurfacePatches found = patches_of(s);
+  EXPECT_EQ(found.verdict, Verdict::part);
+  EXPECT_EQ(found.count, 6U);
+  EXPECT_GT(std::max(found.loose_ends_low / 0.09, found.loose_ends_high / 0.2), 1);
+  EXPECT_NEAR(found.noisy_share, 1.0 / 6, 0.02);
+  // The first triangle is of the noise. Its rim is a zigzag without corners other than the four of the walls.
+  ASSERT_EQ(found.rough, (std::vector<std::uint8_t>{1, 0, 0, 0, 0, 0}));
+  const SurfaceCreases creases = find_creases(s.points, s.triangles, found.patches, 0, found.rough);
+  EXPECT_EQ(creases.corners.size(), 8U);
+}
+
+TEST(SurfacePatches, CountNoLooseEndsAtOpenBorders) {
+  // A wing without ribs: its trailing edge is the only crease, and ends at both of its borders.
+  TriangleMesh s;
+  constexpr Index around = 24, along = 4;
+  for (Index k = 0; k <= along; ++k)
+    for (Index i = 0; i < around; ++i) {
+      const double t = 2 * std::numbers::pi * i / around, width = std::sin(t / 2);
+      s.points.emplace_back(std::cos(t), 0.3 * std::sin(t) * width, k);
+    }
+  for (Index k = 0; k < along; ++k)
+    for (Index i = 0; i < around; ++i) {
+      const Index a = k * around + i, b = k * around + (i + 1) % around;
+      s.triangles.push_back({a, b, b + around});
+      s.triangles.push_back({a, b + around, a + around});
+    }
+  const SurfacePatches found = patches_of(s);
+  EXPECT_EQ(found.loose_ends_high, 0);
+  EXPECT_NE(found.verdict, Verdict::scan);
+}
+
 TEST(SurfacePatches, LeaveOutCreasesThatFadeOut) {
   // Two halves of a strip that turn by 45 degrees along their common edge up to `sharp`, then gradually less,
   // down to 20.

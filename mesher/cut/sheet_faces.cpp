@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "mesher/sheet_faces.h"
+#include "mesher/cut/sheet_faces.h"
 
 #include <algorithm>
 
@@ -7,13 +7,28 @@
 
 namespace tetwright {
 
-std::vector<InterfaceTriangle> sheet_faces(const CutMesh& mesh, const SheetedField& field,
-                                           const std::vector<std::uint8_t>& candidates) {
+std::vector<PartFace> part_faces(const TetMesh& mesh, const SheetParts& parts) {
+  // Points with tets of more than one part.
+  std::vector<RegionIndex> first(mesh.points.size(), on_interface);
+  std::vector<std::uint8_t> candidates(mesh.points.size(), 0);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    for (const Index p : mesh.tets[t]) {
+      if (first[p] == on_interface) first[p] = parts.of_tets[t];
+      if (first[p] != parts.of_tets[t]) candidates[p] = 1;
+    }
+  std::vector<PartFace> out;
+  for (const MeshFace& f : mesh_faces(mesh.tets, mesh.points.size(), &candidates))
+    if (f.count == 2 && parts.of_tets[f.first] != parts.of_tets[f.second])
+      out.push_back({f.ids, f.first, f.second});
+  return out;
+}
+
+std::vector<InterfaceTriangle> sheet_faces(const TetMesh& mesh, const SheetParts& parts) {
+  const SheetedField& field = *parts.field;
   std::vector<InterfaceTriangle> out;
-  for (const MeshFace& f : mesh_faces(mesh.tets, mesh.points.size(), &candidates)) {
-    if (f.count != 2) continue;
-    const RegionIndex first = mesh.regions[f.first], second = mesh.regions[f.second];
-    const std::uint32_t component = first == second ? no_index : field.component_between(first, second);
+  for (const PartFace& f : part_faces(mesh, parts)) {
+    const RegionIndex first = parts.of_tets[f.first], second = parts.of_tets[f.second];
+    const std::uint32_t component = field.component_between(first, second);
     if (component == no_index) continue;
     const Tet& behind = mesh.tets[field.part(first).sides.of(component)->in_front ? f.second : f.first];
     for (std::size_t k = 0; k < 4; ++k) {
