@@ -37,6 +37,8 @@ BodyField build_field(const MesherInput& input, const GridFrame& voxels, bool ke
     std::set_union(narrow.voxels.begin(), narrow.voxels.end(), asked.voxels.begin(), asked.voxels.end(),
                    std::back_inserter(exact));
     surfaces.push_back(LevelSet::of_surface(surface, voxels, progress));
+    result.caps.push_back(surfaces[b]->caps());
+    for (Vec3& p : result.caps[b].points) p = voxels.to_input(p);
     all_measured[b] =
         measure_local_thickness(surface, *surfaces[b], voxels,
                                 {limits.min_gap / voxels.cell_size, limits.min_thickness / voxels.cell_size},

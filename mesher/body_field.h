@@ -10,6 +10,7 @@
 #include "mesher/thin/local_thickness.h"
 #include "tetwright/mesher_input.h"
 #include "tetwright/progress.h"
+#include "tetwright/surface_mesh.h"
 
 namespace tetwright {
 
@@ -22,6 +23,7 @@ struct BodyField {
   /// Body and wall, for each wall or gap that stays changed in the mesh.
   std::vector<std::pair<std::size_t, ChangedWall>> changed;
   double filling_tets = 0, filling_tets_thickened = 0;  ///< of all bodies, see ThinWallPlan
+  std::vector<TriangleMesh> caps;  ///< of each body's holes, see LevelSet::caps(); input units
 };
 
 /// Refinement of one body for reasons other than thin walls.

@@ -11,6 +11,7 @@
 #include "mesher/complex/labelled_complex.h"
 #include "mesher/cut/thin_wall_recovery.h"
 #include "mesher/domain/material_field.h"
+#include "mesher/features/cap_faces.h"
 #include "mesher/features/crease_fitting.h"
 #include "mesher/features/strip_collapse.h"
 #include "mesher/features/surface_features.h"
@@ -204,6 +205,8 @@ class SurfaceMeshing {
     settle_features(input_, features_, dense);
     if (has_features(input_, features_)) fit_features(dense, made.parts ? &*made.parts : nullptr);
     dense.surface = std::make_shared<const TriangleMesh>(all_surfaces(input_));
+    if (!input_.holes.empty())
+      dense.caps = std::make_shared<const SurfaceCapFaces>(input_, bodies_.caps, dense.report.cell_size);
     dense.report.filling_tets = filling_tets(dense.report);
     return dense;
   }
@@ -283,8 +286,9 @@ class SurfaceMeshing {
   void fit_features(DenseMesh& dense, SheetParts* parts) {
     stages_.begin("creases");
     const double cell = dense.report.cell_size;
-    const auto features = std::make_shared<const FeatureSurface>(
-        input_, features_.bodies, CellTuning::Patches::corner_reach * cell, dense.field, features_.sheets);
+    const auto features = std::make_shared<const FeatureSurface>(input_, features_.bodies,
+                                                                 CellTuning::Patches::corner_reach * cell,
+                                                                 dense.field, features_.sheets, bodies_.caps);
     if (input_.complex) collapse_strips(dense.mesh, *input_.complex, *features, cell, parts);
     if (parts) {
       const std::vector<InterfaceTriangle> sheets = sheet_faces(dense.mesh, *parts);

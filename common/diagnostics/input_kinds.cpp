@@ -71,10 +71,12 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
      .name = "holes-closed",
      .severity = Severity::note,
      .title = "holes closed",
-     .message = "N boundary edges of holes (holes are closed where the winding number is 1/2)",
+     .message =
+         "N boundary edges of holes (holes are closed where the winding number is 1/2), or of flat holes "
+         "(closed in the planes of their rims)",
      .cause = "The surface is open.",
-     .remedy = "Check the closed holes in the report. Large openings are closed by a smooth cap; close them "
-               "yourself if you need another shape."},
+     .remedy = "Check the closed holes in the report. Large openings with a bent rim are closed by a smooth "
+               "cap; close them yourself if you need another shape. `--cap` names caps."},
     {.code = surface_self_intersects,
      .name = "surface-self-intersects",
      .severity = Severity::note,

@@ -2,9 +2,11 @@
 #include "mesher/features/feature_surface.h"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <set>
 
+#include "common/parallel/parallel_sort.h"
 #include "mesher/complex/labelled_complex.h"
 #include "mesher/tuning/cut_tuning.h"
 
@@ -12,7 +14,7 @@ namespace tetwright {
 
 FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches,
                                double corner_reach, std::shared_ptr<const MaterialField> field,
-                               const SheetPatches& of_sheets)
+                               const SheetPatches& of_sheets, const std::vector<TriangleMesh>& caps)
     : field_(std::move(field)) {
   Items items;
   for (const MaterialLayer& layer : input.layers) bodies_[layer.tag] = 0;
@@ -20,7 +22,7 @@ FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<Surfa
   if (input.complex)
     add_complex(input, patches, of_sheets, corner_reach, items);
   else
-    add_bodies(input, patches, corner_reach, items);
+    add_bodies(input, patches, corner_reach, caps, items);
   no_patch_ = static_cast<Patch>(groups_.size());
   auto [points, triangles, segments] = std::move(items);
   creases_ = ProjectionTree(points, std::move(segments));
@@ -68,8 +70,34 @@ void FeatureSurface::add_triangles(const std::vector<Vec3>& points, const std::v
     corners_.push_back({points[c], {meeting.begin(), meeting.end()}});
 }
 
+namespace {
+
+/// Adds caps with the patches of the nearest triangles of their body. Without caps, points on them would be
+/// drawn to the rims.
+/// \param first first of `items` that belongs to the body
+void add_caps(const TriangleMesh& caps, std::size_t first, std::vector<Vec3>& points,
+              std::vector<ProjectionTree::Item>& items) {
+  if (caps.triangles.empty()) return;
+  const ProjectionTree body(points, {items.begin() + static_cast<std::ptrdiff_t>(first), items.end()});
+  std::vector<ProjectionTree::Item> added(caps.triangles.size());
+  const auto shift = static_cast<Index>(points.size());
+  parallel_for(0, added.size(), CutGrains::searches, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const auto& [a, b, c] = caps.triangles[i];
+      const auto hit = body.nearest_of((caps.points[a] + caps.points[b] + caps.points[c]) / 3,
+                                       std::numeric_limits<double>::infinity(),
+                                       [](const ProjectionTree::Item&) { return true; });
+      added[i] = {{shift + a, shift + b, shift + c}, body.items()[hit->item].kind};
+    }
+  });
+  points.insert(points.end(), caps.points.begin(), caps.points.end());
+  items.insert(items.end(), added.begin(), added.end());
+}
+
+}  // namespace
+
 void FeatureSurface::add_bodies(const MesherInput& input, const std::vector<SurfacePatches>& patches,
-                                double corner_reach, Items& items) {
+                                double corner_reach, const std::vector<TriangleMesh>& caps, Items& items) {
   for (std::size_t b = 0; b < input.bodies.size(); ++b) {
     const RepairedSurface& surface = input.bodies[b].surface;
     if (patches[b].verdict == SurfacePatches::Verdict::meeting && !patches[b].any()) {
@@ -81,8 +109,10 @@ void FeatureSurface::add_bodies(const MesherInput& input, const std::vector<Surf
     sheet_of_patch_.resize(groups_.size(), b);
     for (std::size_t t = 0; t < surface.groups.size(); ++t)
       groups_[first_patch + patches[b].patches[t]] = input.bodies[b].groups[surface.groups[t]];
+    const std::size_t first_item = items.triangles.size();
     add_triangles(surface.points, surface.triangles, patches[b].patches, patches[b].rough,
                   static_cast<Patch>(first_patch), corner_reach, items);
+    if (b < caps.size()) add_caps(caps[b], first_item, items.points, items.triangles);
   }
 }
 

@@ -44,8 +44,12 @@ class FeatureSurface : public ReferenceSurface {
   /// \param corner_reach as for find_creases()
   /// \param field answers queries for faces without patches
   /// \param of_sheets patches of the inner sheets of the input's complex, if it has any
+  /// \param caps of each body's holes, input units; each triangle continues the patch of the nearest one of
+  /// the
+  ///   body. Empty: none.
   FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach,
-                 std::shared_ptr<const MaterialField> field, const SheetPatches& of_sheets = {});
+                 std::shared_ptr<const MaterialField> field, const SheetPatches& of_sheets = {},
+                 const std::vector<TriangleMesh>& caps = {});
 
   double signed_distance(const Vec3& point, MaterialTag material) const override {
     return field_->signed_distance(point, material);
@@ -115,7 +119,7 @@ class FeatureSurface : public ReferenceSurface {
   void add_complex(const MesherInput& input, const std::vector<SurfacePatches>& patches,
                    const SheetPatches& of_sheets, double corner_reach, Items& items);
   void add_bodies(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach,
-                  Items& items);
+                  const std::vector<TriangleMesh>& caps, Items& items);
   /// Adds triangles with their patches, and the creases between these.
   void add_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                      const std::vector<std::uint16_t>& patches, const std::vector<std::uint8_t>& rough,

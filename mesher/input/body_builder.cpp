@@ -14,6 +14,7 @@
 #include "mesher/input/body_contacts.h"
 #include "mesher/input/surface_cleaning.h"
 #include "mesher/input/surface_components.h"
+#include "mesher/input/surface_holes.h"
 #include "mesher/input/surface_measures.h"
 #include "mesher/tuning/input_tuning.h"
 #include "tetwright/error.h"
@@ -117,16 +118,46 @@ MaterialTag BodyBuilder::free_tag() {
   return next_tag_;
 }
 
+/// Cleans the surfaces, closes their flat holes, and names the holes of all surfaces together. Frees points
+/// and triangles of `surfaces`; their groups receive those of caps.
+std::vector<BodyBuilder::ClosedSurface> BodyBuilder::close_holes(std::vector<MaterialSurface>& surfaces,
+                                                                 std::set<std::string> names) {
+  std::vector<ClosedSurface> closed;
+  std::vector<SurfaceHole>& holes = input_.holes;
+  Vec3 low = Vec3::Constant(INFINITY), high = Vec3::Constant(-INFINITY);
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    MaterialSurface& s = surfaces[i];
+    ClosedSurface& own = closed.emplace_back();
+    own.cleaned = clean_surface(s.surface, s.file, own.findings);
+    s.surface.points = {};
+    s.surface.triangles = {};
+    s.surface.triangle_groups = {};
+    for (const Vec3& p : own.cleaned.points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    for (const SurfaceRegion& group : s.surface.groups) names.insert(group.name);
+    for (SurfaceHole& hole : close_flat_holes(own.cleaned, s.surface.groups, s.file, caps_, own.findings)) {
+      hole.surface = i;
+      holes.push_back(std::move(hole));
+    }
+    if (progress_) progress_->throw_if_stopped();
+  }
+  order_holes(holes);
+  name_holes(holes, caps_.names, names, (high - low).norm());
+  for (const SurfaceHole& hole : holes)
+    if (hole.sharp) surfaces[hole.surface].surface.groups[hole.group] = {0, hole.name};
+  return closed;
+}
+
 void BodyBuilder::add(std::vector<MaterialSurface> surfaces, NestedRule nested, RegionRule rule,
-                      const std::vector<Partition>& partitions) {
-  for (MaterialSurface& s : surfaces) {
-    std::vector<Diagnostic> findings;
-    CleanedSurface cleaned = clean_surface(s.surface, s.file, findings);
+                      const std::vector<Partition>& partitions, std::set<std::string> names) {
+  std::vector<ClosedSurface> closed = close_holes(surfaces, std::move(names));
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    MaterialSurface& s = surfaces[i];
+    std::vector<Diagnostic>& findings = closed[i].findings;
+    CleanedSurface cleaned = std::move(closed[i].cleaned);
     const std::vector<SurfaceRegion> groups = s.surface.groups;
     if (!add_layers(cleaned, s, nested, partitions, findings) &&
         (rule == RegionRule::outer || !may_have_inner_walls(cleaned) ||
          !add_cells(cleaned, s, nested, findings))) {
-      s.surface = {};
       SurfaceRepair repaired = repair_cleaned(std::move(cleaned), s.file, nested, std::move(findings));
       findings = std::move(repaired.findings);
       input_.bodies.push_back({s.name, s.tag, s.file, std::move(repaired.surface), groups});

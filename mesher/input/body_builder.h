@@ -22,23 +22,29 @@ class BodyBuilder {
   /// \param tags in use
   /// \param progress may be null
   BodyBuilder(MesherInput& input, std::set<MaterialTag> tags, const ContactOptions& contact,
-              Progress* progress)
-      : input_(input), tags_(std::move(tags)), contact_(contact), progress_(progress) {}
+              const CapOptions& caps, Progress* progress)
+      : input_(input), tags_(std::move(tags)), contact_(contact), caps_(caps), progress_(progress) {}
 
-  /// Repairs the surfaces one by one and appends each as a body, followed by its nested components; or each
-  /// of its cells, if inner walls divide it.
-  /// \param partitions further walls between cells
-  /// \throws InputError as repair_surface() does; for a partition that divides nothing
-  /// \throws UsageError for a contact tolerance that is not above 0
-  /// \throws Interrupted
+  /// Closes flat holes, repairs the surfaces one by one and appends each as a body, followed by its nested
+  /// components; or each of its cells, if inner walls divide it. \param partitions further walls between
+  /// cells \param names of patches in use; those of the surfaces' groups are added \throws InputError as
+  /// repair_surface() does; for a partition that divides nothing \throws UsageError for a contact tolerance
+  /// that is not above 0; as name_holes() does \throws Interrupted
   void add(std::vector<MaterialSurface> surfaces, NestedRule nested, RegionRule rule,
-           const std::vector<Partition>& partitions = {});
+           const std::vector<Partition>& partitions = {}, std::set<std::string> names = {});
 
   /// Renames the cells that contain the points.
   /// \throws UsageError for a point that is in no cell, or in a cell that another seed names differently
   void name(const std::vector<RegionSeed>& seeds);
 
  private:
+  /// A surface that was cleaned, with its flat holes closed.
+  struct ClosedSurface {
+    CleanedSurface cleaned;
+    std::vector<Diagnostic> findings;
+  };
+
+  std::vector<ClosedSurface> close_holes(std::vector<MaterialSurface>& surfaces, std::set<std::string> names);
   MaterialTag free_tag();
   bool add_cells(const CleanedSurface& cleaned, const MaterialSurface& from, NestedRule nested,
                  std::vector<Diagnostic>& findings);
@@ -55,6 +61,7 @@ class BodyBuilder {
   MesherInput& input_;
   std::set<MaterialTag> tags_;
   const ContactOptions& contact_;
+  const CapOptions& caps_;
   Progress* progress_;
   MaterialTag next_tag_ = 1;
   std::set<std::size_t> cells_;  ///< bodies that are cells

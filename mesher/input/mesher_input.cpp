@@ -121,17 +121,19 @@ double largest_coordinate(const MesherInput& input) {
 
 MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers,
                               NestedRule nested, const ContactOptions& contact, const RegionOptions& regions,
-                              Progress* progress, const SheetOptions& sheets) {
+                              Progress* progress, const SheetOptions& sheets, const CapOptions& caps) {
   if (surfaces.empty()) throw UsageError("there is no surface to mesh");
   MesherInput input;
   name_groups(surfaces, input.findings);
   input.groups = measure_groups(surfaces);
   std::set<MaterialTag> tags = tags_in_use(surfaces, layers);
-  BodyBuilder builder(input, std::move(tags), contact, progress);
+  BodyBuilder builder(input, std::move(tags), contact, caps, progress);
   std::vector<Partition> partitions;
   for (const SheetSurface& s : sheets.surfaces)
     if (s.divides) partitions.push_back(make_partition(s, sheets.extend, input.findings));
-  builder.add(std::move(surfaces), nested, regions.rule, partitions);
+  std::set<std::string> names;
+  for (const SheetSurface& s : sheets.surfaces) names.insert(s.name);
+  builder.add(std::move(surfaces), nested, regions.rule, partitions, std::move(names));
   builder.name(regions.seeds);
   input.layers = std::move(layers);
   find_bounding_box(input);

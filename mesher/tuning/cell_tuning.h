@@ -109,6 +109,19 @@ struct CellTuning {
   };
 
   /// Resolution of surfaces and their patches.
+  /// Faces that close holes.
+  struct Caps {
+    static constexpr double min_area = 8;  ///< squared cells: smaller holes have hardly any faces
+    /// Max difference, in diagonals, of the distances from surface and cap at which a face still belongs to
+    /// the cap: above rounding, far below the size of faces.
+    static constexpr double near = 1e-9;
+    /// Likewise where surfaces were joined within the contact tolerance: twice its default.
+    static constexpr double near_joined = 2e-5;
+    /// Cosine between the normals of a flat cap and its faces: 60 degrees, as the faces of its neighbours may
+    /// be as near.
+    static constexpr double min_facing = 0.5;
+  };
+
   struct Patches {
     /// A surface whose points are all within this distance of a plane, in diagonals, encloses nothing in
     /// cells of any size.

@@ -40,6 +40,30 @@ struct InputTuning {
     static constexpr double step_inside = 1e-4;
   };
 
+  /// Holes and their caps.
+  struct Holes {
+    /// Max distance of a flat rim from its plane, in diagonals: the rounding of coordinates written with six
+    /// digits, and of planes that other programs cut along.
+    static constexpr double flat = 1e-5;
+    /// Holes smaller than this share of the surface get no flat cap: hardly any mesh resolves them.
+    static constexpr double min_share = 1e-5;
+    /// Rims of smaller caps, as a share of the surface, are no creases on their own: a few cells at the
+    /// usual resolutions.
+    static constexpr double min_sharp_share = 1e-3;
+    /// Largest ratio of a cap to the rest of its component: that of a dome 1/28 as high as wide, below which
+    /// a surface may well be a sheet.
+    static constexpr double max_ratio = 0.995;
+    /// Share of a sharp rim that must turn by more than the feature angle.
+    static constexpr double sharp_share = 0.5;
+    /// Only the largest flat holes of a file, up to this number, are closed, as they are compared in pairs.
+    static constexpr std::size_t max_flat = 2000;
+    /// Relative difference below which sizes are equal, and the step of coordinates, as a share of the hole's
+    /// size, at which lowest points are compared: the rounding of coordinates written with six digits.
+    static constexpr double equal = 1e-6;
+    /// Max distance of a point that names a cap, in diagonals: a point read off a picture.
+    static constexpr double near = 0.05;
+  };
+
   /// Surfaces that divide bodies, continued beyond their borders.
   struct Partitions {
     /// Cosine between the directions of two edges on one side of a corner: 30 degrees, well below the corners

@@ -198,9 +198,19 @@ TEST(InnerSheets, CannotBeCombinedWithLayers) {
 }
 
 TEST(InnerSheets, InAnOpenBodyAreRefused) {
-  TriangleMesh box = make_box(low, high);
-  box.triangles.pop_back();
-  EXPECT_THROW(in_box({sheet("baffle", baffle())}, 0, box), InputError);
+  const auto box_without = [](const auto& chosen) {
+    TriangleMesh box = make_box(low, high);
+    std::erase_if(box.triangles, [&](const Triangle& t) {
+      return chosen(Vec3((box.points[t[0]] + box.points[t[1]] + box.points[t[2]]) / 3));
+    });
+    return box;
+  };
+  const auto without_corner =
+      box_without([](const Vec3& p) { return p.z() == high.z() || p.x() == high.x(); });
+  EXPECT_THROW(in_box({sheet("baffle", baffle())}, 0, without_corner), InputError);
+  // Flat holes are closed.
+  const auto without_lid = box_without([](const Vec3& p) { return p.z() == high.z(); });
+  EXPECT_EQ(in_box({sheet("baffle", baffle())}, 0, without_lid).sheets.size(), 1U);
 }
 
 TEST(Partitions, DivideABodyIntoMaterials) {

@@ -410,3 +410,12 @@ def test_sheets_and_partitions_are_surfaces_by_name():
     assert found["name"] == "baffle" and abs(found["area"] - 0.4 * np.hypot(0.6, 0.2)) < 1e-4
     level = np.array([(-1, -1, 0.4), (2, -1, 0.6), (2, 2, 0.6), (-1, 2, 0.4)]), sheet[1]
     assert len(tetwright.mesh(CUBE, partition={"level": level}, resolution=10).material_names) == 2
+
+
+def test_caps_of_holes_have_names():
+    duct = CUBE_POINTS * (1, 1, 3), np.concatenate([CUBE_QUADS[:4, [0, 1, 2]], CUBE_QUADS[:4, [0, 2, 3]]])  # without ends
+    mesh = tetwright.mesh(duct, resolution=12, cap=["inlet@0.5,0.5,0", "outlet@0.5,0.5,3"])
+    assert {(cap["name"], cap["centre"][2]) for cap in mesh.stats["caps"]["patches"]} == {("inlet", 0), ("outlet", 3)}
+    assert tetwright.mesh(duct, resolution=12, cap="inlet@0.5,0.5,0").stats["caps"]["patches"][1]["name"] == "cap_2"
+    with pytest.raises(tetwright.UsageError, match="from the nearest cap"):
+        tetwright.mesh(duct, resolution=12, cap="inlet@0.5,0.5,1.5")

@@ -250,6 +250,16 @@ void add_material_options(CLI::App& app, CommandLine& c) {
       ->expected(1)
       ->type_name("NAME@X,Y,Z")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option_function<std::vector<std::string>>(
+         "--cap",
+         [&c](const std::vector<std::string>& all) {
+           for (const std::string& text : all) c.options.bodies.caps.push_back(parse_seed("--cap", text));
+         },
+         "Call the cap nearest to this point NAME: the patch that closes a hole; repeatable (default: cap_1, "
+         "cap_2 ... by size)")
+      ->expected(1)
+      ->type_name("NAME@X,Y,Z")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
 }
 
 void add_strict(CLI::App& app, CommandLine& c) {

@@ -86,6 +86,26 @@ std::string feature_line(const FeatureReport& f) {
   return printable(line);
 }
 
+/// Line such as "caps: 2 of 2 holes, 12.3 % of the boundary: cap_1 (area 0.5, flat), cap_2 (area 0.1)".
+std::string caps_line(const CapReport& report) {
+  std::string line =
+      text("caps: %zu of %zu hole%s", report.caps.size(), report.holes, report.holes == 1 ? "" : "s");
+  if (report.caps.empty())
+    return line + " have faces of their own: they are too small, or hidden by another body";
+  constexpr std::size_t max_named = 8;
+  line += text(", %.3g %% of the boundary: ", 100 * report.area / report.boundary_area);
+  for (std::size_t i = 0; i < std::min(max_named, report.caps.size()); ++i) {
+    const CapReport::Cap& cap = report.caps[i];
+    line += (i > 0 ? ", " : "") + cap.name +
+            text(" (area %.4g%s)", cap.area,
+                 !cap.named ? ", not a patch"
+                 : cap.flat ? ", flat"
+                            : "");
+  }
+  if (report.caps.size() > max_named) line += text(" and %zu more", report.caps.size() - max_named);
+  return printable(line);
+}
+
 std::string patches_line(const std::vector<PatchComparison>& patches) {
   constexpr std::size_t max_named = 8;
   std::string line = "named patches: ";
@@ -139,6 +159,7 @@ void print_report(const CommandLine& line, const PrepareReport& run) {
   if (run.volume) std::printf("%s\n", volume_line(*run.volume).c_str());
   for (const FeatureReport& f : run.features) std::printf("%s\n", feature_line(f).c_str());
   if (!run.patches.empty()) std::printf("%s\n", patches_line(run.patches).c_str());
+  if (run.caps) std::printf("%s\n", caps_line(*run.caps).c_str());
   print_contacts(run.contacts);
   if (run.result)
     for (const SheetStatistics& s : run.result->sheets) std::printf("%s\n", sheet_line(s).c_str());

@@ -105,7 +105,10 @@ MesherInput repaired(const std::vector<TriangleMesh>& surfaces, const std::vecto
                          static_cast<MaterialTag>(i + 1),
                          {.points = surfaces[i].points, .triangles = surfaces[i].triangles},
                          names[i]});
-  return make_mesher_input(std::move(materials));
+  // Caps are no part of the surfaces to compare with.
+  CapOptions caps;
+  caps.close_flat = false;
+  return make_mesher_input(std::move(materials), {}, NestedRule::automatic, {}, {}, nullptr, {}, caps);
 }
 
 /// Returns std::nullopt unless the surface is closed. `mesh` has its boundary as that of one material.

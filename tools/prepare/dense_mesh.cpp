@@ -135,6 +135,7 @@ DenseMesh make_dense_mesh(ScanInput input, PrepareRun& run) {
   }
   // If the field does not cover the outside, the nearest sizes are used there.
   require_sizes_at(run, run.options.cells.keep_outside ? inner_points(dense.mesh) : dense.mesh.points);
+  run.caps = std::move(dense.caps);
   run.report.features = dense.report.features;
   run.report.creases = std::move(dense.report.creases);
   run.report.mesher = std::move(dense.report);

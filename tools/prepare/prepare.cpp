@@ -121,6 +121,10 @@ Prepared carry_out(std::vector<Input> inputs, PrepareRun& run) {
   // Comparing and returning the mesh has no deadline.
   run.progress.set_deadline(Progress::no_deadline);
   assess(result.mesh, run);
+  // The borders of caps follow faces: they are no curves of the mesh for anything that comes before.
+  // A dense mesh is simplified later, and the simplifier would keep them.
+  if (run.caps)
+    run.report.caps = run.caps->name(result.mesh, run.task == Task::mesh ? CapNaming::sharp : CapNaming::all);
   result.midside = std::move(run.midside);
   run.progress.throw_if_stopped();
   return result;

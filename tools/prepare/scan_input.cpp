@@ -86,6 +86,7 @@ bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
     throw UsageError(
         "--regions and --region are for surfaces, and the input is a segmented volume; --label-names names "
         "its labels");
+  if (!bodies.caps.empty()) throw UsageError("--cap is for surfaces, and the input is a segmented volume");
   return true;
 }
 
@@ -235,8 +236,11 @@ MesherInput read_surfaces(std::vector<Input>& inputs, PrepareRun& run) {
   else if (options.contact_tolerance)
     contact.tolerance = options.contact_tolerance->value;
   if (options.extend) sheets.extend = options.extend->in_input_units(diagonal_of(surfaces));
+  CapOptions caps;
+  caps.feature_angle = run.options.feature_angle;
+  caps.names = options.caps;
   MesherInput input = make_mesher_input(std::move(surfaces), std::move(layers), options.nested, contact,
-                                        options.regions, &run.progress, sheets);
+                                        options.regions, &run.progress, sheets, caps);
   std::vector<Diagnostic>& all = run.report.diagnostics;
   all.insert(all.end(), input.findings.begin(), input.findings.end());
   run.report.patches = patches_of_input(input);

@@ -152,10 +152,9 @@ nlohmann::json topology_json(const Topology& t, const std::map<MaterialTag, std:
 nlohmann::json mesh_json(const MeshStatistics& m, const std::map<MaterialTag, std::string>& names,
                          double threshold) {
   nlohmann::json materials = nlohmann::json::array();
-  for (const auto& [tag, material] : m.materials) {
+  for (const auto& [tag, material] : m.materials)
     materials.push_back(
         {{"tag", tag}, {"name", name_of(tag, names)}, {"tets", material.tets}, {"volume", material.volume}});
-  }
   nlohmann::json interfaces = nlohmann::json::array();
   for (const auto& [pair, interface] : m.interfaces) {
     interfaces.push_back(
@@ -308,6 +307,24 @@ nlohmann::json patches_json(const std::vector<PatchComparison>& all) {
   return j;
 }
 
+nlohmann::json caps_json(const CapReport& report) {
+  nlohmann::json j = {{"holes", report.holes},
+                      {"flat", report.flat},
+                      {"area", report.area},
+                      {"share", report.boundary_area > 0 ? report.area / report.boundary_area : 0},
+                      {"patches", nlohmann::json::array()}};
+  for (const CapReport::Cap& cap : report.caps)
+    j["patches"].push_back({{"name", cap.name},
+                            {"triangles", cap.triangles},
+                            {"area", cap.area},
+                            {"centre", place_json(cap.centre)},
+                            {"normal", place_json(cap.normal)},
+                            {"named", cap.named},
+                            {"flat", cap.flat},
+                            {"crease", cap.sharp}});
+  return j;
+}
+
 nlohmann::json contacts_json(const std::vector<ContactReport>& all) {
   nlohmann::json j = nlohmann::json::array();
   for (const ContactReport& c : all)
@@ -423,6 +440,7 @@ std::string stats_json(const CommandRun& ended) {
   if (run.mesher) j["fidelity"] = solids_json(run.solids);
   if (!run.features.empty()) j["features"] = features_json(run.features);
   if (!run.patches.empty()) j["patches"] = patches_json(run.patches);
+  if (run.caps) j["caps"] = caps_json(*run.caps);
   if (!run.contacts.empty()) j["contacts"] = contacts_json(run.contacts);
   if (!run.overlaps.empty()) j["overlaps"] = overlaps_json(run.overlaps);
   if (run.deviation)

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -141,6 +142,41 @@ struct MesherReport {
   double seconds_sdf = 0, seconds_octree = 0, seconds_lattice = 0, seconds_move = 0, seconds_cut = 0;
 };
 
+/// The faces of a mesh that close holes of the surfaces.
+struct CapReport {
+  struct Cap {
+    std::string name;            ///< of its patch
+    bool flat = false;           ///< the rim is flat, and so is the cap
+    bool sharp = false;          ///< flat, and the rim is a crease
+    bool named = false;          ///< its faces are a patch of the mesh
+    std::size_t triangles = 0;   ///< 1 or more
+    double area = 0;             ///< input units squared
+    Vec3 centre = Vec3::Zero();  ///< mean of its faces, input units
+    Vec3 normal = Vec3::Zero();  ///< unit, mean of its faces, out of the material of the smaller tag
+  };
+  std::vector<Cap> caps;     ///< those with faces; largest holes first
+  std::size_t holes = 0;     ///< of the surfaces, also those without faces of their own
+  std::size_t flat = 0;      ///< of these, closed in the plane of their rim
+  double area = 0;           ///< of all caps on the boundary, input units squared
+  double boundary_area = 0;  ///< of the boundary of all materials, input units squared
+};
+
+/// Which caps get a patch.
+enum class CapNaming : std::uint8_t {
+  sharp,  ///< those whose rim is a crease
+  all     ///< also those whose rim is only a border between faces, which need not be smooth
+};
+
+/// Names the faces of meshes that close holes.
+class CapFaces {
+ public:
+  virtual ~CapFaces() = default;
+  /// Makes the faces of caps patches of `mesh.interfaces` that are named in `mesh.patch_groups`.
+  /// \param mesh made from the surfaces, with its interfaces. With CapNaming::all nothing should change it
+  ///   afterwards that keeps the borders of patches, as the simplifier does.
+  virtual CapReport name(TetMesh& mesh, CapNaming naming) const = 0;
+};
+
 class MaterialField;
 class OutputFiles;
 
@@ -152,6 +188,9 @@ struct DenseMesh {
   std::shared_ptr<const ReferenceSurface> reference;
   /// The repaired surfaces of all bodies as meshed; null for label volumes.
   std::shared_ptr<const TriangleMesh> surface;
+  /// Null if the surfaces have no holes. Patches of sharp flat caps are named already; the others are best
+  /// named after simplifying, since their borders are no creases.
+  std::shared_ptr<const CapFaces> caps;
   MesherReport report;
 };
 

@@ -187,6 +187,30 @@ struct SheetOptions {
   double extend = 0;
 };
 
+/// How holes of surfaces are closed.
+struct CapOptions {
+  /// True: a hole with a flat rim gets a cap in the rim's plane. Otherwise all holes are left to the winding
+  /// number.
+  bool close_flat = true;
+  FeatureAngle feature_angle = {};     ///< rims of flat caps that turn by more are creases
+  std::vector<RegionSeed> names = {};  ///< each for the cap nearest to its point
+};
+
+/// A hole of a surface, and its cap.
+struct SurfaceHole {
+  std::string name;    ///< of the patch of the mesh that closes it
+  bool flat = false;   ///< closed by triangles in the plane of its rim, which are part of the surface
+  bool sharp = false;  ///< flat, and the rim is a crease
+  /// Area of a flat cap; of other holes that of their projection onto the plane in which it is largest. Input
+  /// units squared.
+  double size = 0;
+  std::vector<Vec3> points;  ///< of the rim, input units; of a hole that is not flat also its centre
+  std::vector<std::array<Index, 2>> rim;  ///< edges
+  std::vector<Triangle> triangles;        ///< the cap; of a hole that is not flat a fan around its centre
+  std::size_t surface = 0;                ///< index of the surface that has it, among those given
+  std::uint32_t group = 0;  ///< of a sharp cap's triangles in that surface, see RepairedSurface::groups
+};
+
 /// Faces that two bodies share.
 struct ContactReport {
   std::string first, second;   ///< materials, in the order of the bodies
@@ -236,6 +260,7 @@ struct MesherInput {
   std::vector<ContactReport> contacts = {};  ///< by pair of bodies
   std::vector<OverlapReport> overlaps = {};
   std::vector<Sheet> sheets = {};
+  std::vector<SurfaceHole> holes = {};  ///< of all surfaces, largest first
 };
 
 /// The reason why surfaces do not define the solid of a material with certainty: a flaw of its own surface or
@@ -256,6 +281,9 @@ enum class SurfaceFlaw : std::uint8_t {
 /// the group that is its whole outer boundary, or NAME_1, NAME_2 and so on by volume, largest first. A wall
 /// is part of both cells' surfaces. Closed shells that touch, cross or contain each other are no walls.
 ///
+/// Flat holes are closed first, see CapOptions. Caps are called cap_1, cap_2 and so on by size, largest
+/// first.
+///
 /// If more than one surface has groups of triangles, names that occur in several surfaces are qualified (see
 /// qualify_names()), and groups that have only a number are named after their surface.
 ///
@@ -270,12 +298,12 @@ enum class SurfaceFlaw : std::uint8_t {
 ///   OverlapRule::error; for sheets and partitions that are closed, meet others or are in no body; for
 ///   coordinates too large or a size too small for areas and volumes in double precision
 /// \throws UsageError for no surface, sheets together with layers, two materials of one name or tag, a layer
-///   whose thickness is not above 0, more than 60,000 materials, or a seed that is in no cell or whose cell
-///   another one names
+///   whose thickness is not above 0, more than 60,000 materials, a seed that is in no cell or whose cell
+///   another one names, or a name for a cap that is taken or far from all holes
 MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers = {},
                               NestedRule nested = NestedRule::automatic, const ContactOptions& contact = {},
                               const RegionOptions& regions = {}, Progress* progress = nullptr,
-                              const SheetOptions& sheets = {});
+                              const SheetOptions& sheets = {}, const CapOptions& caps = {});
 
 /// The longest side of the bounding box, input units.
 double longest_side(const MesherInput& input);

@@ -54,10 +54,16 @@ void find_name_changes(const CommandLine& line, const TetMesh& mesh, PrepareRepo
   note("names of patches", changes.patch_names);
 }
 
+std::size_t named_caps(const PrepareReport& report) {
+  if (!report.caps) return 0;
+  return static_cast<std::size_t>(std::count_if(report.caps->caps.begin(), report.caps->caps.end(),
+                                                [](const CapReport::Cap& cap) { return cap.named; }));
+}
+
 std::size_t named_patches(const PrepareReport& report) {
-  return static_cast<std::size_t>(
-      std::count_if(report.patches.begin(), report.patches.end(),
-                    [](const PatchComparison& p) { return !p.group.name.empty(); }));
+  return named_caps(report) + static_cast<std::size_t>(std::count_if(
+                                  report.patches.begin(), report.patches.end(),
+                                  [](const PatchComparison& p) { return !p.group.name.empty(); }));
 }
 
 /// Number of patches that are sheets, which every format of tet meshes can hold.
@@ -87,9 +93,9 @@ void find_unwritten_patches(const CommandLine& line, const TetFormatInfo& format
       (boundary_lacks ? "nor can .off, but .vtp .ply .stl .obj can" : "but --boundary FILE can") +
       ", and .msh";
   if (line.outputs.no_boundary)
-    note("named patches", report.patches.size(), ", as --no-boundary asks");
+    note("named patches", report.patches.size() + named_caps(report), ", as --no-boundary asks");
   else if (!format.surfaces)
-    note("named patches", report.patches.size() - sheet_patches(report, mesh), no_place);
+    note("named patches", report.patches.size() + named_caps(report) - sheet_patches(report, mesh), no_place);
   else if (!format.patch_names)
     note("names of patches", named_patches(report), no_place);
 }

@@ -65,8 +65,8 @@ def _texts(key: str, kind: str, value: Any, inputs: Inputs) -> Iterable[bytes]:
         return [_label_ranges(value)]
     if key == "layer" and not isinstance(value, (str, list)):
         raise _core.UsageError(f"layer is a {type(value).__name__}; give a dict from names to thicknesses")
-    if key in ("layer", "surface") and isinstance(value, list):
-        return [_text(key, kind if key == "layer" else "FILE", item) for item in value]
+    if key in ("layer", "region", "cap", "surface") and isinstance(value, list):
+        return [_text(key, "FILE" if key == "surface" else kind, item) for item in value]
     return [_text(key, kind, value)]
 
 

@@ -153,6 +153,8 @@ struct BodyOptions {
   std::optional<Length> contact_tolerance;
   OverlapRule overlap = OverlapRule::later;
   RegionOptions regions;  ///< of surfaces that inner walls divide
+  /// Names of caps, each for the cap nearest to its point; the others are called cap_1, cap_2 and so on.
+  std::vector<RegionSeed> caps;
   /// Borders of Input::as_partition() that end before the boundary of a body are extended by at most this.
   std::optional<Length> extend;
   /// True: each solid, group or label of a surface's triangles becomes a material of that name instead of a
@@ -317,6 +319,7 @@ struct PrepareReport {
   std::optional<CreaseComparison> crease_comparison;
   std::optional<CurvingReport> second_order;  ///< with --order 2
   std::vector<PatchComparison> patches;       ///< named or numbered patches of the input
+  std::optional<CapReport> caps;              ///< faces that close holes, if the surfaces have any
   std::size_t input_limited = 0;  ///< tets below the bound because of the input, see input_limited_tets()
   std::vector<SolidComparison> solids;
   std::map<MaterialTag, std::string> material_names;

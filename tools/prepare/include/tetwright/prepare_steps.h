@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -65,7 +66,8 @@ struct PrepareRun {
   const Progress::Clock::time_point deadline_before;
   double seconds_waited = 0;  ///< spent waiting for streams
   PrepareReport& report;
-  std::optional<MidsideNodes> midside;  ///< midside nodes of the result, with order 2
+  std::optional<MidsideNodes> midside;   ///< midside nodes of the result, with order 2
+  std::shared_ptr<const CapFaces> caps;  ///< of the surfaces; null without holes
 };
 
 /// Adds diagnostics for contents that a reader dropped.
