@@ -40,6 +40,7 @@ class BodyBuilder {
 
  private:
   MaterialTag free_tag();
+  double tolerance_for(const CleanedSurface& cleaned, const MaterialSurface& from) const;
   bool add_cells(const CleanedSurface& cleaned, const MaterialSurface& from, NestedRule nested,
                  std::vector<Diagnostic>& findings);
   bool add_layers(const CleanedSurface& cleaned, const MaterialSurface& from, NestedRule nested,
@@ -61,6 +62,7 @@ class BodyBuilder {
   /// Partitions that divide a body, and where borders of others end inside one.
   std::set<std::uint32_t> dividing_;
   std::map<std::uint32_t, std::string> ends_;
+  std::map<std::uint32_t, std::string> repeated_;  ///< partitions that lie on others, and what is said of it
 };
 
 }  // namespace tetwright
