@@ -38,7 +38,9 @@ class Components {
   }
   template <class Vertex>
   std::size_t find(const Vertex& v) {
-    std::size_t k = number_.at(&*v);
+    return find_root(number_.at(&*v));
+  }
+  std::size_t find_root(std::size_t k) {
     while (root_[k] != k) k = root_[k] = root_[root_[k]];
     return k;
   }
@@ -75,16 +77,22 @@ SetShape shape_of(const Nef& set) {
   for (auto f = set.halffacets_begin(); f != set.halffacets_end(); ++f) {
     if (f->is_twin() || !f->mark()) continue;
     shape.euler += 2;  // a sphere, less a disc for each cycle
-    std::optional<Nef::Vertex_const_handle> first;
+    std::optional<std::size_t> first;
+    const auto join = [&](const Nef::Vertex_const_handle& v) {
+      if (!first) first = components.find(v);
+      components.unite(components.find(v), components.find_root(*first));
+    };
     for_each_cycle(f, [&](auto at) {
       --shape.euler;
       const auto end = at;
-      CGAL_For_all(at, end) {
-        const Nef::Vertex_const_handle v = at->source()->source();
-        if (!first) first = v;
-        components.unite(components.find(v), components.find(*first));
-      }
+      CGAL_For_all(at, end) join(at->source()->source());
     });
+    // Points in which another part of the set touches the face.
+    for (auto cycle = f->facet_cycles_begin(); cycle != f->facet_cycles_end(); ++cycle)
+      if (cycle.is_shalfloop()) {
+        --shape.euler;
+        join(Nef::SHalfloop_const_handle(cycle)->incident_sface()->center_vertex());
+      }
   }
   shape.components = components.count();
   return shape;
