@@ -153,10 +153,12 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
      .severity = Severity::note,
      .title = "bodies not joined",
      .message = "surfaces that meet are not joined (NAME is open; contacts are accurate to a cell)",
-     .cause = "Bodies touch or cross, but the surface of one is open or crosses itself.",
+     .cause =
+         "Bodies, or parts of one surface, touch or cross, but one of them is open or crosses itself, or has "
+         "facets as small as the contact tolerance.",
      .remedy =
-         "Close or repair that surface. Until then edges at the contact are not kept, and small gaps may "
-         "open there."},
+         "Close or repair that surface, or give a smaller `--contact-tolerance`. Until then edges at the "
+         "contact are not kept, and small gaps may open there."},
     {.code = sheet_cut_off,
      .name = "sheet-cut-off",
      .severity = Severity::note,
@@ -167,7 +169,7 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
     {.code = sheet_on_faces,
      .name = "sheet-on-faces",
      .severity = Severity::note,
-     .title = "part of a sheet on the boundary of a body or on another sheet",
+     .title = "part of a sheet or partition on the boundary of a body or on another one",
      .message = "a part of the sheet 'NAME' on the boundary of a body, with an area of A (left out)",
      .cause =
          "The mesh has faces there already: those of the boundary, of an interface, or of another sheet.",

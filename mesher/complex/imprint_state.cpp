@@ -2,6 +2,7 @@
 #include "mesher/complex/imprint_state.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <set>
 
@@ -38,6 +39,11 @@ std::pair<double, double> foot_on(const Vec3& p, const Vec3& a, const Vec3& b) {
   return {s, (a + s * u - p).squaredNorm()};
 }
 
+void require_imprint_memory(double bytes) {
+  require_memory(bytes, "cutting surfaces along the curves in which they meet",
+                 "free some, give a larger --memory-limit, or give surfaces of fewer triangles that cross");
+}
+
 void ImprintState::find_pairs(bool all) {
   std::vector<Index> listed;
   for (Index t = 0; t < triangles_.size(); ++t)
@@ -50,8 +56,18 @@ void ImprintState::find_pairs(bool all) {
     boxes[i].high += margin;
     triangles_[listed[i]].active = false;
   }
+  std::atomic<std::size_t> found = 0;
+  const double available = available_memory();  // a limit applies to this thread, not to those of a loop
   pairs_ = intersecting_pairs(boxes, [&](Index i, Index k) {
-    return triangles_[listed[i]].surface != triangles_[listed[k]].surface;
+    if (triangles_[listed[i]].surface == triangles_[listed[k]].surface) return false;
+    // Relaxed: only a count.
+    const std::size_t count = found.fetch_add(1, std::memory_order_relaxed);
+    if (count % Imprint::pairs_between_checks == 0) {
+      throw_if_stopped();
+      const MemoryLimit limit(available);
+      require_imprint_memory(Imprint::bytes_per_pair * static_cast<double>(count));
+    }
+    return true;
   });
   for (ImprintEdge& pair : pairs_) pair = {listed[pair[0]], listed[pair[1]]};
   for (const auto& [a, b] : pairs_) triangles_[a].active = triangles_[b].active = true;
@@ -79,19 +95,27 @@ bool ImprintState::is_on(const ImprintEdge& e, std::uint32_t surface) const {
   return std::binary_search(edge_uses_.begin(), edge_uses_.end(), Membership{key(e), surface});
 }
 
-std::vector<ImprintEvent> ImprintState::find_events() const {
+std::vector<ImprintEvent> ImprintState::find_events() {
+  std::vector<char> has_events(pairs_.size(), 0);
   std::vector<ImprintEvent> events = parallel_collect<ImprintEvent>(
       0, pairs_.size(), ComplexGrains::pairs,
       [&](std::size_t begin, std::size_t end, std::vector<ImprintEvent>& out) {
+        throw_if_stopped();
         for (std::size_t i = begin; i < end; ++i) {
           const Part &a = triangles_[pairs_[i][0]], &b = triangles_[pairs_[i][1]];
+          if (!a.changed && !b.changed) continue;
+          const std::size_t before = out.size();
           points_against(a, pairs_[i][1], out);
           points_against(b, pairs_[i][0], out);
           edges_against(a, b, out);
           pierce(a, pairs_[i][1], out);
           pierce(b, pairs_[i][0], out);
+          has_events[i] = out.size() > before;
         }
       });
+  for (Part& t : triangles_) t.changed = false;
+  for (std::size_t i = 0; i < pairs_.size(); ++i)
+    if (has_events[i]) triangles_[pairs_[i][0]].changed = triangles_[pairs_[i][1]].changed = true;
   parallel_sort_unique(events);
   return events;
 }
@@ -181,8 +205,7 @@ std::optional<double> ImprintState::crossing(const ImprintEdge& e, const Triangl
   return share;
 }
 
-std::vector<ImprintEvent> ImprintState::find_slivers() const {
-  const double limit = Imprint::flat_share * Imprint::flat_share * squared_;
+std::vector<ImprintEvent> ImprintState::find_slivers(double limit) const {
   std::vector<ImprintEvent> found;
   std::set<ImprintEdge> used;
   for (const Part& t : triangles_) {
@@ -191,7 +214,7 @@ std::vector<ImprintEvent> ImprintState::find_slivers() const {
       const Index p = t.ids[k];
       const ImprintEdge e = ascending_edge(t.ids[(k + 1) % 3], t.ids[(k + 2) % 3]);
       const auto [share, squared] = foot_on(at(p), at(e[0]), at(e[1]));
-      if (squared > limit || !(share > 0 && share < 1)) continue;
+      if (squared > limit * limit || !(share > 0 && share < 1)) continue;
       const std::array<ImprintEdge, 3> own{e, ascending_edge(p, e[0]), ascending_edge(p, e[1])};
       if (std::any_of(own.begin(), own.end(), [&](const ImprintEdge& x) { return used.contains(x); }))
         continue;

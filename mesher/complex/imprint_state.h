@@ -36,6 +36,9 @@ SegmentPair nearest_points(const Vec3& a, const Vec3& b, const Vec3& c, const Ve
 /// Foot of a point on a segment, as a fraction, and its squared distance.
 std::pair<double, double> foot_on(const Vec3& p, const Vec3& a, const Vec3& b);
 
+/// \throws OutputError if this many bytes are not available
+void require_imprint_memory(double bytes);
+
 /// Triangles of several surfaces, and where they meet (imprint_surfaces()).
 class ImprintState {
  public:
@@ -44,27 +47,37 @@ class ImprintState {
     Index source;  ///< triangle of the input
     std::uint32_t surface;
     bool active;  ///< its box meets that of a triangle of another surface
+    /// New, moved, or with events since find_events(): pairs of other triangles have none.
+    bool changed = true;
   };
 
-  explicit ImprintState(double tolerance) : tolerance_(tolerance), squared_(tolerance * tolerance) {}
+  /// \param progress may be null
+  ImprintState(double tolerance, Progress* progress)
+      : tolerance_(tolerance), squared_(tolerance * tolerance), progress_(progress) {}
 
  protected:
   const Vec3& at(Index p) const { return points_[p]; }
   static std::uint64_t key(const ImprintEdge& e) { return std::uint64_t{e[0]} << 32 | e[1]; }
   static bool has(const Triangle& t, Index p) { return t[0] == p || t[1] == p || t[2] == p; }
 
+  /// \throws Interrupted, OutOfTime
+  void throw_if_stopped() const {
+    if (progress_) progress_->throw_if_stopped();
+  }
   /// Lists the pairs of triangles of different surfaces whose boxes meet.
   /// \param all also triangles that were not active
+  /// \throws OutputError if they need more memory than is available
   void find_pairs(bool all);
-  std::vector<ImprintEvent> find_events() const;
-  /// Triangles that imprinting has made flat: the middle point is put on the longest edge, which makes them
-  /// vanish. No two of them share an edge.
-  std::vector<ImprintEvent> find_slivers() const;
+  std::vector<ImprintEvent> find_events();
+  /// Triangles whose height is at most `limit`, input units: the middle point is put on the longest edge,
+  /// which makes them vanish. No two of them share an edge.
+  std::vector<ImprintEvent> find_slivers(double limit) const;
   /// Fraction at which an edge crosses the interior of a triangle, with both ends farther than the tolerance
   /// from its plane.
   std::optional<double> crossing(const ImprintEdge& e, const Triangle& t) const;
 
   double tolerance_, squared_;
+  Progress* progress_;
   std::vector<Vec3> points_;
   std::vector<Part> triangles_;
   std::vector<ImprintEdge> pairs_;  ///< of triangles of different surfaces whose boxes meet

@@ -25,25 +25,31 @@ using Event = ImprintEvent;
 class Imprinter : private ImprintState {
  public:
   Imprinter(const SurfaceSoup& soup, double tolerance, Progress* progress)
-      : ImprintState(tolerance), progress_(progress) {
+      : ImprintState(tolerance, progress) {
     points_ = soup.points;
     owner_.assign(soup.points.size(), 0);
     for (Index t = 0; t < soup.triangles.size(); ++t) {
-      triangles_.push_back({soup.triangles[t], t, soup.surface[t], true});
+      triangles_.push_back({soup.triangles[t], t, soup.surface[t], true, true});
       for (const Index p : soup.triangles[t]) owner_[p] = soup.surface[t];
     }
     first_new_ = soup.points.size();
   }
 
-  ImprintedSurfaces run() {
-    double budget = Imprint::max_new_points;
+  ImprintedSurfaces run(const ImprintBound& bound) {
+    double budget = bound.points;
     for (int round = 0; round < Imprint::max_rounds; ++round) {
-      if (progress_) progress_->throw_if_stopped();
+      throw_if_stopped();
       find_pairs(round == 0);
-      if (round == 0)
-        budget = std::max(budget, Imprint::points_per_pair * static_cast<double>(pairs_.size()));
+      if (round == 0) budget = std::max(budget, bound.per_pair * static_cast<double>(pairs_.size()));
       std::vector<Event> events = find_events();
-      if (events.empty()) events = find_slivers();
+      if (events.empty()) {
+        events = find_slivers(Imprint::flat_share * tolerance_);
+      } else if (round >= Imprint::first_round_of_slivers) {
+        // A curve that three surfaces share may have kinks of up to the tolerance. A sliver at a kink, which
+        // only some of them have, would make the others cross forever.
+        if (std::vector<Event> slivers = find_slivers(tolerance_); !slivers.empty())
+          events = std::move(slivers);
+      }
       if (events.empty()) {
         result_.unresolved.reset();
         break;
@@ -55,7 +61,12 @@ class Imprinter : private ImprintState {
         merge(events);
         continue;
       }
-      if (static_cast<double>(points_.size() - first_new_) > budget) break;
+      const auto adds_point = [](const Event& e) { return e.kind >= Event::Kind::edges_cross; };
+      const auto added = std::count_if(events.begin(), events.end(), adds_point);
+      result_.too_many_points =
+          static_cast<double>(points_.size() - first_new_) + static_cast<double>(added) > budget;
+      if (result_.too_many_points) break;
+      require_imprint_memory(Imprint::bytes_per_event * static_cast<double>(events.size()));
       insert(events);
     }
     for (const Part& t : triangles_) {
@@ -100,7 +111,8 @@ class Imprinter : private ImprintState {
     for (Index p = 0; p < best.size(); ++p)
       if (Index& of_group = best[sets.root(p)]; earlier(p, of_group)) of_group = p;
     for (Part& t : triangles_)
-      for (Index& p : t.ids) p = best[sets.root(p)];
+      for (Index& p : t.ids)
+        if (const Index kept = best[sets.root(p)]; kept != p) p = kept, t.changed = true;
     drop_collapsed();
   }
 
@@ -188,7 +200,10 @@ class Imprinter : private ImprintState {
       grid.add(added);
       return added;
     };
+    std::vector<char> moved(points_.size(), 0);
+    std::size_t inserted = 0;
     for (const Event& e : events) {
+      if (inserted++ % ComplexGrains::pairs == 0) throw_if_stopped();
       switch (e.kind) {
         case Event::Kind::points:
           break;
@@ -198,6 +213,7 @@ class Imprinter : private ImprintState {
           if (e.owner < owner_[e.point]) {
             points_[e.point] = at(e.first[0]) + share * (at(e.first[1]) - at(e.first[0]));
             owner_[e.point] = e.owner;
+            moved[e.point] = 1;
           }
           put_on_edge(e.point, e.first);
           break;
@@ -209,6 +225,7 @@ class Imprinter : private ImprintState {
           if (e.owner < owner_[e.point]) {
             points_[e.point] -= step;
             owner_[e.point] = e.owner;
+            moved[e.point] = 1;
           }
           put_inside(e.point, e.other);
           break;
@@ -237,6 +254,8 @@ class Imprinter : private ImprintState {
         }
       }
     }
+    for (Part& t : triangles_)
+      t.changed |= std::any_of(t.ids.begin(), t.ids.end(), [&](Index p) { return moved[p] != 0; });
     for (auto& [edge, list] : on_edges) std::sort(list.begin(), list.end());
     divide(on_edges, inside);
   }
@@ -277,12 +296,15 @@ class Imprinter : private ImprintState {
     std::vector<char> is_touched(triangles_.size(), 0);
     for (const Index t : touched) is_touched[t] = 1;
     std::vector<std::vector<Edge>> segments(triangles_.size());
+    std::size_t compared = 0;
     for (const auto& [a, b] : pairs_) {
+      if (compared++ % ComplexGrains::pairs == 0) throw_if_stopped();
       if (!is_touched[a] && !is_touched[b]) continue;
       add_segments(a, b, points, on_edges, segments);
     }
     std::vector<std::vector<Triangle>> parts(touched.size());
     parallel_for(0, touched.size(), ComplexGrains::divided, [&](std::size_t begin, std::size_t end) {
+      throw_if_stopped();
       for (std::size_t i = begin; i < end; ++i)
         parts[i] = divided(touched[i], on_edges, inside, segments[touched[i]]);
     });
@@ -295,7 +317,7 @@ class Imprinter : private ImprintState {
         continue;
       }
       for (const Triangle& ids : parts[i])
-        next.push_back({ids, triangles_[t].source, triangles_[t].surface, true});
+        next.push_back({ids, triangles_[t].source, triangles_[t].surface, true, true});
       ++i;
     }
     triangles_ = std::move(next);
@@ -376,7 +398,6 @@ class Imprinter : private ImprintState {
     return division.triangles();
   }
 
-  Progress* progress_;
   ImprintedSurfaces result_;
   std::size_t first_new_ = 0;
   std::vector<std::uint32_t> owner_;  ///< earliest surface on which each point lies
@@ -384,8 +405,9 @@ class Imprinter : private ImprintState {
 
 }  // namespace
 
-ImprintedSurfaces imprint_surfaces(const SurfaceSoup& soup, double tolerance, Progress* progress) {
-  return Imprinter(soup, tolerance, progress).run();
+ImprintedSurfaces imprint_surfaces(const SurfaceSoup& soup, double tolerance, Progress* progress,
+                                   const ImprintBound& bound) {
+  return Imprinter(soup, tolerance, progress).run(bound);
 }
 
 }  // namespace tetwright

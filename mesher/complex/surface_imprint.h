@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "mesher/tuning/complex_tuning.h"
 #include "tetwright/progress.h"
 #include "tetwright/tet_mesh.h"
 
@@ -25,6 +26,15 @@ struct ImprintedSurfaces {
   bool any = false;           ///< whether any two surfaces meet; if not, all is as it was
   /// Where triangles of two surfaces still meet other than in points and edges after the last round.
   std::optional<Vec3> unresolved;
+  /// The last round was the last one because the next would exceed the bound on new points
+  /// (ComplexTuning::Imprint); then `unresolved` is set.
+  bool too_many_points = false;
+};
+
+/// New points beyond which no further round begins: the larger of both.
+struct ImprintBound {
+  double points = ComplexTuning::Imprint::max_new_points;
+  double per_pair = ComplexTuning::Imprint::points_per_pair;  ///< of triangles whose boxes meet at first
 };
 
 /// Cuts surfaces along the curves in which they meet, so that afterwards any two triangles of different
@@ -42,7 +52,9 @@ struct ImprintedSurfaces {
 ///
 /// \pre each surface by itself has no two equal points
 /// \param tolerance above 0, in the unit of points
+/// \throws OutputError if it needs more memory than is available, see require_memory()
 /// \throws Interrupted
-ImprintedSurfaces imprint_surfaces(const SurfaceSoup& soup, double tolerance, Progress* progress);
+ImprintedSurfaces imprint_surfaces(const SurfaceSoup& soup, double tolerance, Progress* progress,
+                                   const ImprintBound& bound = {});
 
 }  // namespace tetwright

@@ -290,6 +290,13 @@ bool TriangleSubdivision::find_edge(Local a, Local b, Local& part, int& edge) co
 }
 
 bool TriangleSubdivision::constrain_local(Local a, Local b) {
+  while (a != b && a != none) a = constrain_first(a, b);
+  return a == b;
+}
+
+/// Makes the segment from a to b an edge, up to the first point on it.
+/// \return that point, or `none` if an earlier segment is in the way
+TriangleSubdivision::Local TriangleSubdivision::constrain_first(Local a, Local b) {
   const auto fix = [&](Local u, Local v) {
     Local part;
     int edge;
@@ -303,7 +310,7 @@ bool TriangleSubdivision::constrain_local(Local a, Local b) {
     }
     return true;
   };
-  if (fix(a, b)) return true;
+  if (fix(a, b)) return b;
   const auto between = [&](Local p) {  // on the line: ahead of a
     const auto along = [&](Local q) {
       return static_cast<__int128>(points_[q].x - points_[a].x) * (points_[b].x - points_[a].x) +
@@ -317,17 +324,17 @@ bool TriangleSubdivision::constrain_local(Local a, Local b) {
     const auto k = static_cast<std::size_t>(slot(t, a));
     const Local p = parts_[t].points[(k + 1) % 3], q = parts_[t].points[(k + 2) % 3];
     for (const Local on : {p, q})
-      if (side(a, b, on) == 0 && between(on)) return fix(a, on) && constrain_local(on, b);
+      if (side(a, b, on) == 0 && between(on)) return fix(a, on) ? on : none;
     if (side(a, b, p) < 0 && side(a, b, q) > 0) part = t;
   }
-  if (part == none) return false;
+  if (part == none) return none;
   std::deque<std::array<Local, 2>> crossed;
   Local end = b;
   int edge = slot(part, a);
   while (true) {
     const auto k = static_cast<std::size_t>(edge);
     const Local p = parts_[part].points[(k + 1) % 3], q = parts_[part].points[(k + 2) % 3];
-    if (parts_[part].fixed[k] || parts_[part].across[k] == none) return false;
+    if (parts_[part].fixed[k] || parts_[part].across[k] == none) return none;
     crossed.push_back({p, q});
     const Local next = parts_[part].across[k];
     std::size_t o = 0;
@@ -343,7 +350,7 @@ bool TriangleSubdivision::constrain_local(Local a, Local b) {
     edge = slot(next, where > 0 ? q : p);
   }
   for (std::size_t left = 4 * crossed.size() * crossed.size() + 64; !crossed.empty(); --left) {
-    if (left == 0) return false;
+    if (left == 0) return none;
     const auto [p, q] = crossed.front();
     crossed.pop_front();
     Local t;
@@ -362,8 +369,7 @@ bool TriangleSubdivision::constrain_local(Local a, Local b) {
     const bool still = c != a && c != end && d != a && d != end && side(a, end, c) * side(a, end, d) < 0;
     if (still) crossed.push_back({c, d});
   }
-  if (!fix(a, end)) return false;
-  return end == b || constrain_local(end, b);
+  return fix(a, end) ? end : none;
 }
 
 }  // namespace tetwright

@@ -63,6 +63,7 @@ class TriangleSubdivision {
   Local find(Index number) const;
   bool find_edge(Local a, Local b, Local& part, int& edge) const;
   bool constrain_local(Local a, Local b);
+  Local constrain_first(Local a, Local b);
   std::vector<Local> parts_around(Local point) const;
 
   std::vector<Point> points_;

@@ -173,6 +173,9 @@ void BodyBuilder::add(std::vector<MaterialSurface> surfaces, NestedRule nested, 
   for (std::uint32_t k = 0; k < partitions.size(); ++k) {
     if (dividing_.contains(k)) continue;
     const auto end = ends_.find(k);
+    if (const auto twice = repeated_.find(k); end == ends_.end() && twice != repeated_.end())
+      throw InputError(partitions[k].file, 0,
+                       "the partition '" + partitions[k].name + "' divides no body: " + twice->second);
     throw InputError(
         partitions[k].file, 0,
         "the partition '" + partitions[k].name + "' divides no body: " +
@@ -184,14 +187,20 @@ void BodyBuilder::add(std::vector<MaterialSurface> surfaces, NestedRule nested, 
   }
 }
 
+/// The contact tolerance of one surface, input units.
+double BodyBuilder::tolerance_for(const CleanedSurface& cleaned, const MaterialSurface& from) const {
+  const double diagonal = diagonal_of(cleaned.points), tolerance = contact_tolerance(contact_, diagonal);
+  require_larger_than_tolerance(diagonal, tolerance, from.name, from.file);
+  return tolerance;
+}
+
 /// Adds the cells into which partitions divide a body.
 /// \return false if they do not
 bool BodyBuilder::add_layers(const CleanedSurface& cleaned, const MaterialSurface& from, NestedRule nested,
                              const std::vector<Partition>& partitions, std::vector<Diagnostic>& findings) {
   const PartitionedSurface all = with_partitions(cleaned, from.surface.groups, partitions);
   if (!all.any()) return false;
-  DividedSurface divided =
-      divide_surface(all.surface, contact_tolerance(contact_, diagonal_of(cleaned.points)), progress_);
+  DividedSurface divided = divide_surface(all.surface, tolerance_for(cleaned, from), progress_);
   if (divided.unresolved)
     throw InputError(from.file, 0,
                      "a partition cannot be joined with this surface at " + place_text(*divided.unresolved) +
@@ -241,11 +250,28 @@ void BodyBuilder::report_partitions(const DividedSurface& divided, const Partiti
     given[all.partition[t]] += (p[ids[1]] - p[ids[0]]).cross(p[ids[2]] - p[ids[0]]).norm() / 2;
   }
   std::map<std::uint32_t, double> bound_none = loose;
+  std::map<std::uint32_t, SheetLoss> repeated;
+  for (const WallTriangle& w : divided.repeated) {
+    if (w.source < all.body_triangles || all.continued[w.source - all.body_triangles]) continue;
+    repeated[partition_of(w.source)].add(w.area(), w.centre());
+    bound_none[partition_of(w.source)] += w.area();
+  }
   for (const WallTriangle& w : divided.sheets)
     if (w.outside && w.source >= all.body_triangles) bound_none[partition_of(w.source)] += w.area();
   for (const auto& [k, area] : given) {
     const bool divides = walled > 1 && bound_none[k] < (1 - InputTuning::Cells::equal) * area;
     if (divides) dividing_.insert(k);
+    if (const auto twice = repeated.find(k); twice != repeated.end() && divides)
+      input_.findings.push_back({.code = DiagnosticCode::sheet_on_faces,
+                                 .file = partitions[k].file,
+                                 .what = "a part of the partition '" + partitions[k].name +
+                                         "' on an earlier one or on the boundary of '" + from.name +
+                                         "', with an area of " + short_number(twice->second.area),
+                                 .done = "left out",
+                                 .places = {twice->second.place}});
+    else if (twice != repeated.end())
+      repeated_.try_emplace(k, "it lies on an earlier one or on the boundary of '" + from.name + "', at " +
+                                   place_text(twice->second.place) + "; leave it out");
     if (loose[k] > 0 && border[k]) {
       const Vec3 place = border[k]->centre();
       const std::string where = "it ends inside '" + from.name + "' at " + place_text(place);
@@ -273,8 +299,14 @@ void BodyBuilder::report_partitions(const DividedSurface& divided, const Partiti
 /// \return false if inner walls do not divide it
 bool BodyBuilder::add_cells(const CleanedSurface& cleaned, const MaterialSurface& from, NestedRule nested,
                             std::vector<Diagnostic>& findings) {
-  const double tolerance = contact_tolerance(contact_, diagonal_of(cleaned.points));
+  const double tolerance = tolerance_for(cleaned, from);
   DividedSurface divided = divide_surface(cleaned, tolerance, progress_);
+  if (divided.unresolved)
+    findings.push_back({.code = DiagnosticCode::bodies_not_joined,
+                        .what = "parts of a surface that meet are not joined",
+                        .done = "their facets there are about as small as the contact tolerance of " +
+                                short_number(tolerance) + "; inner walls are left out",
+                        .places = {*divided.unresolved}});
   if (!divided.has_inner_walls()) return false;
   arrange_shells(divided.cells, nested, findings);
   report_cells(divided, findings);

@@ -46,6 +46,7 @@ class BodyBuilder {
 
   std::vector<ClosedSurface> close_holes(std::vector<MaterialSurface>& surfaces, std::set<std::string> names);
   MaterialTag free_tag();
+  double tolerance_for(const CleanedSurface& cleaned, const MaterialSurface& from) const;
   bool add_cells(const CleanedSurface& cleaned, const MaterialSurface& from, NestedRule nested,
                  std::vector<Diagnostic>& findings);
   bool add_layers(const CleanedSurface& cleaned, const MaterialSurface& from, NestedRule nested,
@@ -68,6 +69,7 @@ class BodyBuilder {
   /// Partitions that divide a body, and where borders of others end inside one.
   std::set<std::uint32_t> dividing_;
   std::map<std::uint32_t, std::string> ends_;
+  std::map<std::uint32_t, std::string> repeated_;  ///< partitions that lie on others, and what is said of it
 };
 
 }  // namespace tetwright

@@ -102,15 +102,15 @@ void report_sheets(const std::vector<SheetFate>& fates, MesherInput& input) {
     const SheetFate& fate = fates[k];
     const MesherInput::Sheet& sheet = input.sheets[k];
     const std::string name = "the sheet '" + sheet.group.name + "'";
-    if (fate.kept == 0 && fate.outside.area > 0)
-      throw InputError(sheet.file, 0,
-                       name + " is in no body, the largest triangle at " + place_text(fate.outside.place) +
-                           "; check its units and position, or leave it out");
     if (fate.kept == 0 && fate.on_faces.area > 0)
       throw InputError(sheet.file, 0,
                        name + " lies on the boundary of a body, at " + place_text(fate.on_faces.place) +
                            ", and not inside; to name faces of the boundary, give the body's surface named "
                            "groups");
+    if (fate.kept == 0 && fate.outside.area > 0)
+      throw InputError(sheet.file, 0,
+                       name + " is in no body, the largest triangle at " + place_text(fate.outside.place) +
+                           "; check its units and position, or leave it out");
     if (fate.kept == 0)
       throw InputError(
           sheet.file, 0,
@@ -163,6 +163,15 @@ double contact_tolerance(const ContactOptions& options, double diagonal) {
   return tolerance;
 }
 
+void require_larger_than_tolerance(double size, double tolerance, const std::string& name,
+                                   const std::string& file) {
+  if (size < ComplexTuning::Contact::min_body * tolerance)
+    throw InputError(file, 0,
+                     "the contact tolerance of " + short_number(tolerance) + " is too large for '" + name +
+                         "', which is only " + short_number(size) +
+                         " across; use a smaller --contact-tolerance");
+}
+
 void join_bodies(MesherInput& input, const SheetSoup& sheets, const ContactOptions& options,
                  Progress* progress) {
   const double tolerance = contact_tolerance(options, (input.high - input.low).norm());
@@ -180,12 +189,8 @@ void join_bodies(MesherInput& input, const SheetSoup& sheets, const ContactOptio
                               .places = {place}});
   };
   for (const MesherInput::Body& body : input.bodies)
-    if ((body.surface.high - body.surface.low).norm() < ComplexTuning::Contact::min_body * tolerance)
-      throw InputError(body.file, 0,
-                       "the contact tolerance of " + short_number(tolerance) + " is too large for '" +
-                           body.name + "', which is only " +
-                           short_number((body.surface.high - body.surface.low).norm()) +
-                           " across; use a smaller --contact-tolerance");
+    require_larger_than_tolerance((body.surface.high - body.surface.low).norm(), tolerance, body.name,
+                                  body.file);
   SurfaceSoup soup = soup_of(input);
   SoupSheets in_soup;
   in_soup.count = input.sheets.size();
@@ -197,6 +202,13 @@ void join_bodies(MesherInput& input, const SheetSoup& sheets, const ContactOptio
       not_joined(body.file, "its surface is open; contacts are accurate to a cell", body.surface.points[0]);
       return;
     }
+  if (imprinted.too_many_points)
+    throw InputError(input.bodies.back().file, 0,
+                     "at " + place_text(*imprinted.unresolved) +
+                         " surfaces meet so often that cutting them does not end with the contact tolerance "
+                         "of " +
+                         short_number(tolerance) +
+                         "; use a smaller --contact-tolerance, or repair the surfaces there");
   if (imprinted.unresolved) {
     not_joined(input.bodies.back().file,
                "their facets there are about as small as the contact tolerance of " +

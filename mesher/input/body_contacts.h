@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 #include "mesher/input/sheet_surfaces.h"
 #include "tetwright/mesher_input.h"
 #include "tetwright/progress.h"
@@ -11,6 +13,12 @@ namespace tetwright {
 /// \param diagonal of the bounding box of all surfaces, input units
 /// \throws UsageError if it is not above 0
 double contact_tolerance(const ContactOptions& options, double diagonal);
+
+/// Checks that a body is well above the tolerance.
+/// \param size diagonal of the body's bounding box, input units
+/// \throws InputError beginning with `file`
+void require_larger_than_tolerance(double size, double tolerance, const std::string& name,
+                                   const std::string& file);
 
 /// Joins closed bodies that meet: sets MesherInput::complex, contacts and overlaps, and replaces the surfaces
 /// of the bodies by what they are in the complex. Nothing changes if no two surfaces come closer than the

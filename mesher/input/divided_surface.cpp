@@ -83,11 +83,15 @@ class SurfaceDivider {
     points_ = std::move(imprinted.points);
     std::set<Triangle> known;
     for (std::size_t i = 0; i < imprinted.triangles.size(); ++i) {
-      if (!known.insert(sorted(imprinted.triangles[i])).second) continue;
+      if (const Triangle& t = imprinted.triangles[i]; !known.insert(sorted(t)).second) {
+        result_.repeated.push_back(
+            {{points_[t[0]], points_[t[1]], points_[t[2]]}, origin[imprinted.source[i]], false, false});
+        continue;
+      }
       triangles_.push_back(imprinted.triangles[i]);
       source_.push_back(origin[imprinted.source[i]]);
     }
-    return true;
+    return !triangles_.empty();  // all may be smaller than the tolerance
   }
 
   /// Numbers sheets by area, so that smaller ones move onto larger ones.

@@ -22,7 +22,7 @@ struct SurfaceCell {
   bool walled = false;  ///< shares a triangle with another cell
 };
 
-/// A triangle that bounds no cell.
+/// A triangle that bounds no cell, or is there twice.
 struct WallTriangle {
   std::array<Vec3, 3> corners;
   Index source;    ///< the triangle of the surface that it is a part of
@@ -46,11 +46,12 @@ struct DividedSurface {
   double outside_sheet_area = 0;  ///< the part with the outside on both sides
   std::optional<Vec3> sheet;      ///< the centre of the largest one
   std::vector<WallTriangle> sheets;
-  std::size_t dissolved_cells = 0;  ///< too small or thin, joined with a neighbour
-  std::optional<Vec3> dissolved;    ///< on the boundary of one
-  std::size_t crossing_pairs = 0;   ///< triangles of one sheet that cross each other
-  std::optional<Vec3> crossing;     ///< a corner of one of them
-  std::optional<Vec3> unresolved;   ///< see ImprintedSurfaces::unresolved; there are then no cells
+  std::vector<WallTriangle> repeated;  ///< left out, since an earlier triangle has the same corners
+  std::size_t dissolved_cells = 0;     ///< too small or thin, joined with a neighbour
+  std::optional<Vec3> dissolved;       ///< on the boundary of one
+  std::size_t crossing_pairs = 0;      ///< triangles of one sheet that cross each other
+  std::optional<Vec3> crossing;        ///< a corner of one of them
+  std::optional<Vec3> unresolved;      ///< see ImprintedSurfaces::unresolved; there are then no cells
 
   /// True if two cells share a wall, and no more area hangs outside than the cells have.
   bool has_inner_walls() const;

@@ -2,14 +2,18 @@
 #include "tetwright/mesher_input.h"
 
 #include <algorithm>
+#include <utility>
 
+#include "common/features/edge_uses.h"
 #include "common/geometry/self_intersection.h"
+#include "common/message_text.h"
 #include "mesher/input/surface_cleaning.h"
 #include "mesher/input/surface_components.h"
 #include "mesher/input/surface_measures.h"
 #include "mesher/input/surface_nesting.h"
 #include "mesher/tuning/input_tuning.h"
 #include "tetwright/error.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 
@@ -33,6 +37,42 @@ RepairedSurface assemble(const CleanedSurface& from, const std::vector<SurfaceCo
   s.points = keep_used(from.points, s.triangles);
   measure_surface(s);
   return s;
+}
+
+/// True for triangles that cross each other although none of their corners are close: not just neighbours
+/// whose common points were rounded.
+bool are_tangled(const CleanedSurface& s, Index f, Index g) {
+  const Vec3& apex = s.points[s.triangles[f][0]];
+  double size = 0;
+  for (const Index p : s.triangles[f]) size = std::max(size, (s.points[p] - apex).norm());
+  for (const Index p : s.triangles[f])
+    for (const Index q : s.triangles[g])
+      if ((s.points[p] - s.points[q]).norm() < InputTuning::Soups::close * size) return false;
+  return true;
+}
+
+/// \throws InputError for triangles that form no surface: most share no edge with another, and they cross
+///   everywhere. Distances from such triangles mean nothing, and all of space would be thin walls.
+void refuse_soup(const CleanedSurface& s, const std::vector<std::pair<Index, Index>>& crossing,
+                 const std::string& file) {
+  if (crossing.size() < s.triangles.size()) return;
+  const std::vector<EdgeUse> uses = edge_uses(s.triangles, {});
+  std::vector<char> connected(s.triangles.size(), 0);
+  for (std::size_t i = 1; i < uses.size(); ++i)
+    if (uses[i].key == uses[i - 1].key) connected[uses[i].triangle] = connected[uses[i - 1].triangle] = 1;
+  const auto loose = static_cast<std::size_t>(std::count(connected.begin(), connected.end(), 0));
+  if (2 * loose < s.triangles.size()) return;
+  const auto tangled =
+      static_cast<std::size_t>(std::count_if(crossing.begin(), crossing.end(), [&](const auto& pair) {
+        return are_tangled(s, pair.first, pair.second);
+      }));
+  if (tangled < s.triangles.size()) return;
+  throw InputError(file, 0,
+                   "the triangles form no surface: " + std::to_string(loose) + " of " +
+                       std::to_string(s.triangles.size()) + " share no edge with another, and " +
+                       std::to_string(tangled) + " pairs cross, one at " +
+                       place_text(s.points[s.triangles[crossing[0].first][0]]) +
+                       "; give a surface of connected triangles");
 }
 
 }  // namespace
@@ -71,6 +111,7 @@ SurfaceRepair repair_cleaned(CleanedSurface cleaned, const std::string& file, Ne
   const std::vector<SurfaceComponent> components =
       split_into_components(cleaned.points, cleaned.triangles, cleaned.two_sided, file, result.findings);
   const auto crossing = self_intersections(cleaned.points, cleaned.triangles);
+  refuse_soup(cleaned, crossing, file);
   if (!crossing.empty())
     add_finding(result.findings, DiagnosticCode::surface_self_intersects, "pairs of triangles that intersect",
                 crossing.size(), cleaned.points[cleaned.triangles[crossing[0].first][0]],

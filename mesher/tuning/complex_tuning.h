@@ -27,9 +27,18 @@ struct ComplexTuning {
     /// Rounds until two surfaces have only points and edges in common: two to four in general, more where a
     /// tolerance is near the size of facets, and never ending where it is above it.
     static constexpr int max_rounds = 16;
+    /// Round from which triangles flatter than the tolerance go first: without them it needs two to four.
+    static constexpr int first_round_of_slivers = 4;
     /// Limits of new points: in any case, and for each pair of triangles whose boxes meet at first. Crossing
-    /// surfaces need about two for each pair that crosses.
-    static constexpr double max_new_points = 100'000, points_per_pair = 8;
+    /// surfaces need about two for each pair that crosses. A tolerance near the size of facets makes their
+    /// number grow sixfold in a round, without end.
+    static constexpr double max_new_points = 2000, points_per_pair = 8;
+    /// Pairs of triangles found between two looks at memory and cancellation: some milliseconds of work.
+    static constexpr std::size_t pairs_between_checks = 1 << 17;
+    /// Bytes at the peak for each pair of triangles, and for each point that a round puts on an edge or into
+    /// a triangle, with all that follows from it: one and a half times what 300 to 20,000 crossing triangles
+    /// at random took.
+    static constexpr double bytes_per_pair = 60, bytes_per_event = 1000;
     /// Squared distance, in squared tolerances, beyond which a point that another step of the same round has
     /// moved is no longer put on an edge.
     static constexpr double moved_away = 4;

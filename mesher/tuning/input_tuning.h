@@ -27,6 +27,12 @@ struct InputTuning {
     static constexpr std::size_t max_plain_queries = 16;
   };
 
+  struct Soups {
+    /// Corners of two triangles closer than this, in sizes of a triangle, may be one point that was rounded:
+    /// single precision far from the origin.
+    static constexpr double close = 1e-2;
+  };
+
   /// Cells between the inner walls of a surface.
   struct Cells {
     /// Smaller cells, as a share of the volume of all, are folds of the surface and join a neighbour: 1 % of

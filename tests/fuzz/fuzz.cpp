@@ -19,8 +19,9 @@ std::vector<Target> all_targets() {
   std::vector<Target> all;
   for (const std::span<const Target> some : {surface_targets(), tet_mesh_targets(), volume_targets()})
     all.insert(all.end(), some.begin(), some.end());
-#ifdef TETWRIGHT_FUZZ_VDB
+#ifdef TETWRIGHT_FUZZ_MESHER
   all.push_back({"vdb", run_vdb});
+  all.push_back({"complex", run_complex});
 #endif
   all.push_back({"operations", run_operations});
   return all;

@@ -14,6 +14,7 @@
 #include "simplify/operations/fitting.h"
 #include "simplify/operations/insertion.h"
 #include "simplify/operations/smoothing.h"
+#include "tests/fuzz/bytes.h"
 #include "tests/fuzz/targets.h"
 #include "tests/simplify/meshes.h"
 #include "tetwright/error.h"
@@ -21,22 +22,6 @@
 
 namespace tetwright::fuzz {
 namespace {
-
-/// Returns the bytes of the input one by one, then zeros.
-class Bytes {
- public:
-  explicit Bytes(std::string_view bytes) : bytes_(bytes) {}
-  bool empty() const { return bytes_.empty(); }
-  std::uint32_t below(std::uint32_t n) {
-    if (empty()) return 0;
-    const auto first = static_cast<unsigned char>(bytes_.front());
-    bytes_.remove_prefix(1);
-    return first % n;
-  }
-
- private:
-  std::string_view bytes_;
-};
 
 TetMesh choose_mesh(Bytes& bytes) {
   const std::uint32_t kind = bytes.below(4);

@@ -18,6 +18,8 @@ std::span<const Target> tet_mesh_targets();
 std::span<const Target> volume_targets();
 /// Built only with mesher/.
 void run_vdb(std::string_view bytes);
+/// Built only with mesher/.
+void run_complex(std::string_view bytes);
 void run_operations(std::string_view bytes);
 
 }  // namespace tetwright::fuzz

@@ -3,36 +3,22 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <chrono>
 #include <cmath>
 #include <random>
+#include <string>
+#include <thread>
 
 #include "common/geometry/self_intersection.h"
 #include "mesher/complex/labelled_complex.h"
 #include "mesher/complex/triangle_subdivision.h"
+#include "tests/mesher/complex/random_bodies.h"
 #include "tests/mesher/test_surfaces.h"
 #include "tetwright/resources.h"
 
 namespace tetwright {
 namespace {
-
-SurfaceSoup soup_of(const std::vector<TriangleMesh>& surfaces) {
-  SurfaceSoup soup;
-  for (std::uint32_t s = 0; s < surfaces.size(); ++s) {
-    const auto first = static_cast<Index>(soup.points.size());
-    soup.points.insert(soup.points.end(), surfaces[s].points.begin(), surfaces[s].points.end());
-    for (const Triangle& t : surfaces[s].triangles) {
-      soup.triangles.push_back({first + t[0], first + t[1], first + t[2]});
-      soup.surface.push_back(s);
-    }
-  }
-  return soup;
-}
-
-TriangleMesh turned(TriangleMesh mesh, double angle, const Vec3& axis) {
-  const Eigen::Matrix3d turn = Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
-  for (Vec3& p : mesh.points) p = turn * p;
-  return mesh;
-}
 
 double area(const std::vector<Vec3>& points, const Triangle& t) {
   return (points[t[1]] - points[t[0]]).cross(points[t[2]] - points[t[0]]).norm() / 2;
@@ -203,6 +189,63 @@ TEST(SurfaceImprint, DoesNotDependOnTheNumberOfThreads) {
     EXPECT_EQ(other.points, all[0].points);
     EXPECT_EQ(other.triangles, all[0].triangles);
     EXPECT_EQ(other.source, all[0].source);
+  }
+}
+
+/// Triangles at random in the unit cube, each a surface of its own.
+SurfaceSoup random_triangles(Index count) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  SurfaceSoup soup;
+  for (Index t = 0; t < count; ++t) {
+    for (int k = 0; k < 3; ++k) {
+      const double x = unit(random), y = unit(random), z = unit(random);
+      soup.points.emplace_back(x, y, z);
+    }
+    soup.triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+    soup.surface.push_back(t);
+  }
+  return soup;
+}
+
+TEST(SurfaceImprint, OfCrossingTrianglesLeavesNoCrossing) {
+  const ImprintedSurfaces imprinted = imprint_surfaces(random_triangles(40), 1e-7, nullptr);
+  EXPECT_FALSE(imprinted.unresolved);
+  EXPECT_TRUE(self_intersections(imprinted.points, imprinted.triangles).empty());
+}
+
+TEST(SurfaceImprint, StopsSoonWhenCancelled) {
+  const SurfaceSoup soup = random_triangles(6000);
+  Progress progress;
+  std::atomic<bool> begun = false;
+  std::thread canceller([&] {
+    while (!begun) std::this_thread::yield();
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    progress.cancel();
+  });
+  begun = true;
+  const auto start = Progress::Clock::now();
+  EXPECT_THROW(imprint_surfaces(soup, 1e-7, &progress), Interrupted);
+  EXPECT_LT(std::chrono::duration<double>(Progress::Clock::now() - start).count(), 4);
+  canceller.join();
+}
+
+TEST(SurfaceImprint, EndsAtItsBoundAndSaysWhere) {
+  const SurfaceSoup soup = random_triangles(40);
+  const ImprintedSurfaces imprinted = imprint_surfaces(soup, 1e-7, nullptr, {.points = 10, .per_pair = 0});
+  EXPECT_TRUE(imprinted.too_many_points);
+  ASSERT_TRUE(imprinted.unresolved);
+  EXPECT_LT((*imprinted.unresolved - Vec3::Constant(0.5)).cwiseAbs().maxCoeff(), 0.51);
+}
+
+TEST(SurfaceImprint, SaysHowMuchMemoryItNeeds) {
+  const SurfaceSoup soup = random_triangles(300);
+  const MemoryLimit limit(1e6);
+  try {
+    imprint_surfaces(soup, 1e-7, nullptr);
+    FAIL() << "it must be refused";
+  } catch (const OutputError& error) {
+    EXPECT_NE(std::string(error.what()).find("--memory-limit"), std::string::npos) << error.what();
   }
 }
 
