@@ -171,19 +171,49 @@ TEST(InnerSheets, WithOneSideAreRefused) {
   EXPECT_TRUE(holds(refusal({sheet("strip", strip)}), "the sheet is one-sided"));
 }
 
-TEST(InnerSheets, ThatCrossAreRefused) {
-  const std::string text =
-      refusal({sheet("first", parallelogram({0.4, 0.5, 0.3}, {1.2, 0.4, 0}, {0, 0, 0.4})),
-               sheet("second", parallelogram({0.85, 0.25, 0.2}, {0.2, 0.95, 0}, {0, 0, 0.6}))});
-  EXPECT_TRUE(holds(text, "second.off: the sheets 'first' and 'second' meet at ")) << text;
+/// The sheets of a mesh by name.
+std::map<std::string, SheetStatistics> sheets_of(const TetMesh& mesh) {
+  std::map<std::string, SheetStatistics> found;
+  for (const SheetStatistics& s : sheet_statistics(mesh)) found[s.name] = s;
+  return found;
 }
 
-TEST(InnerSheets, ThatBranchAreRefused) {
+TEST(InnerSheets, CrossInACurveOfFourFaces) {
+  const MesherInput input =
+      in_box({sheet("first", parallelogram({0.4, 0.5, 0.3}, {1.2, 0.4, 0}, {0, 0, 0.4})),
+              sheet("second", parallelogram({0.85, 0.25, 0.2}, {0.2, 0.95, 0}, {0, 0, 0.6}))});
+  for (const int resolution : {18, 26, 40}) {
+    const TetMesh mesh = mesh_of(input, resolution).mesh;
+    EXPECT_EQ(broken_promise(mesh.points, mesh.tets), "");
+    EXPECT_TRUE(misplaced_sheet_faces(mesh).empty());
+    const std::map<std::string, SheetStatistics> found = sheets_of(mesh);
+    ASSERT_EQ(found.size(), 2U);
+    EXPECT_NEAR(found.at("first").area, 0.4 * std::hypot(1.2, 0.4), 2e-3);
+    EXPECT_NEAR(found.at("second").area, 0.6 * std::hypot(0.2, 0.95), 2e-3);
+    std::map<std::array<Index, 2>, int> at_edges;
+    for (const InterfaceTriangle& t : mesh.interfaces)
+      if (t.other == t.material)
+        for (std::size_t k = 0; k < 3; ++k) ++at_edges[ascending_edge(t.ids[k], t.ids[(k + 1) % 3])];
+    double crossing = 0;
+    for (const auto& [edge, faces] : at_edges)
+      if (faces == 4) crossing += (mesh.points[edge[0]] - mesh.points[edge[1]]).norm();
+    EXPECT_NEAR(crossing, 0.4, 1e-3) << resolution;
+    for (const auto& [name, s] : found) EXPECT_EQ(s.pieces, 1U) << name << " " << resolution;
+  }
+}
+
+TEST(InnerSheets, BranchInACurveOfThreeFaces) {
   const TriangleMesh fan = joined(joined(parallelogram({1, 0.7, 0.3}, {0.5, 0, 0}, {0, 0, 0.4}),
                                          parallelogram({1, 0.7, 0.3}, {-0.3, 0.4, 0}, {0, 0, 0.4})),
                                   parallelogram({1, 0.7, 0.3}, {-0.3, -0.4, 0}, {0, 0, 0.4}));
-  const std::string text = refusal({sheet("fan", fan)});
-  EXPECT_TRUE(holds(text, "the sheet 'fan' branches or crosses itself at (1, 0.7, ")) << text;
+  const TetMesh mesh = mesh_of(in_box({sheet("fan", fan)}), 20).mesh;
+  EXPECT_EQ(broken_promise(mesh.points, mesh.tets), "");
+  EXPECT_TRUE(misplaced_sheet_faces(mesh).empty());
+  const std::map<std::string, SheetStatistics> found = sheets_of(mesh);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_NEAR(found.at("fan").area, 0.6, 1e-4);
+  EXPECT_EQ(found.at("fan").pieces, 1U);
+  EXPECT_EQ(found.at("fan").euler, 1);
 }
 
 TEST(InnerSheets, GivenTwiceAreRefused) {
