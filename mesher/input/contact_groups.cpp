@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
@@ -36,7 +37,7 @@ std::optional<TwoGroups> groups_of_both(const MesherInput& input, Index f) {
   const auto [low, high] = std::minmax(complex.faces[f].behind, complex.faces[f].front);
   TwoGroups groups;
   for (const LabelledComplex::Source& s : complex.sources(f)) {
-    const RegionIndex region = s.body + 1;
+    const std::uint32_t region = s.body + 1;
     if (region == low || region == high)
       groups[region == low ? 0 : 1] = group_of(input.bodies[s.body], s.triangle);
   }
