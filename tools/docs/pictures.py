@@ -116,10 +116,12 @@ def moved(triangles, by):
     return [[tuple(x + d for x, d in zip(p, by)) for p in t] for t in triangles]
 
 
-def behind(triangles, azimuth, elevation):
+def behind(triangles, azimuth, elevation, up="z"):
     """Those that face away from the camera, of a closed surface: a view into it."""
     a, e = math.radians(azimuth), math.radians(elevation)
-    towards = (math.cos(e) * math.cos(a), math.cos(e) * math.sin(a), math.sin(e))
+    towards = [0.0, 0.0, 0.0]
+    for axis, part in zip({"z": (0, 1, 2), "y": (2, 0, 1)}[up], (math.cos(e) * math.cos(a), math.cos(e) * math.sin(a), math.sin(e))):
+        towards[axis] = part
 
     def faces_camera(t):
         (ax, ay, az), (bx, by, bz) = ([q - p for p, q in zip(t[0], t[k])] for k in (1, 2))
@@ -132,8 +134,8 @@ def layer_of(triangles, colour):
     return {"triangles": [x for t in triangles for p in t for x in p], "colour": colour}
 
 
-def sheets_of(path):
-    """The triangles between tets of one material of a .vtu or other mesh, as the program writes them to a .mesh."""
+def faces_of(path, choose):
+    """The triangles of a .mesh for which `choose` agrees; its argument are the tags of the tets on both sides."""
     points, tets, triangles, section = [], {}, [], None
     with open(path, encoding="utf-8") as file:
         for line in file:
@@ -150,8 +152,11 @@ def sheets_of(path):
                 ids = [int(x) - 1 for x in row[:4]]
                 for k in range(4):
                     tets.setdefault(tuple(sorted(ids[:k] + ids[k + 1:])), []).append(row[4])
-    inner = [t for t in triangles if len(sides := tets[tuple(sorted(t))]) == 2 and sides[0] == sides[1]]
-    return [[points[p] for p in t] for t in inner]
+    return [[points[p] for p in t] for t in triangles if choose(tets[tuple(sorted(t))])]
+
+
+def is_sheet(sides):
+    return len(sides) == 2 and sides[0] == sides[1]
 
 
 class Studio:
@@ -283,7 +288,7 @@ def heater(studio):
     inputs = {part: part + ".obj" for part in ("below", "left", "core", "right", "above")}
     for part, file in inputs.items():
         studio.tetwright("sample", "heater_" + part, "-o", file)
-    page = studio.assembly("heater", inputs, [], 6000)
+    page = studio.assembly("heater", inputs, [], 12000)
     parts = exploded(studio, inputs, ((0, -0.5, 0), (-0.5, 0, 0), (0, 0, 0), (0.5, 0, 0), (0, 0.5, 0)))
     studio.pair("heater", page, ("up=y&look=28,24,2.4", parts), ("up=y&cut=z,0.5&look=28,24,1.9", ()))
 
@@ -291,7 +296,7 @@ def heater(studio):
 def rock(studio):
     """Five layers that share their surfaces."""
     inputs, options = studio.case("layers_five_files")
-    page = studio.assembly("rock", inputs, options, 8000)
+    page = studio.assembly("rock", inputs, options, 15000)
     parts = exploded(studio, inputs, [(0, 0, 0.25 * k) for k in range(5)])
     studio.pair("rock", page, ("look=-55,18,2.6", parts), ("cut=y,0.5&look=-55,18,1.9", ()))
 
@@ -302,7 +307,8 @@ def vessel(studio):
     page = studio.assembly("vessel", inputs, options, 8000)
     block, tube = (read_surface(studio.path(f)) for f in inputs.values())
     surfaces = [layer_of(behind(block, -55, 22), MATERIAL_COLOURS[0]), layer_of(tube, MATERIAL_COLOURS[1])]
-    studio.pair("vessel", page, ("look=-55,22,2", surfaces), ("cut=y,0.5&look=-55,22,1.9", ()))
+    whole = faces_of(studio.path("vessel.mesh"), lambda sides: sides.count("2") == 1)
+    studio.pair("vessel", page, ("look=-55,22,2.7", surfaces), ("cut=y,0.5&look=-55,22,2.7", [layer_of(whole, MATERIAL_COLOURS[1])]))
 
 
 def with_sheets(studio, name, case, tets, look, cut):
@@ -313,13 +319,13 @@ def with_sheets(studio, name, case, tets, look, cut):
     azimuth, elevation, _ = look
     state = "look=" + ",".join(map(str, look))
     surfaces = [layer_of(behind(body, azimuth, elevation), MATERIAL_COLOURS[0]), layer_of(sheets, SHEET_COLOUR)]
-    of_mesh = [layer_of(sheets_of(studio.path(name + ".mesh")), SHEET_COLOUR)]
+    of_mesh = [layer_of(faces_of(studio.path(name + ".mesh"), is_sheet), SHEET_COLOUR)]
     studio.pair(name, page, (state, surfaces), (f"cut={cut}&{state}", of_mesh))
 
 
 def fan(studio):
     """Blades without thickness in a duct."""
-    with_sheets(studio, "fan", "blades_obj", 8000, (-62, 24, 2.1), "y,0.5")
+    with_sheets(studio, "fan", "blades_obj", 8000, (-62, 24, 2.7), "y,0.5")
 
 
 def horizons(studio):
@@ -328,11 +334,11 @@ def horizons(studio):
         print("horizons: left out, since TETWRIGHT_DATA is not set")
         return
     inputs, options = studio.case("data_horizons_partition")
-    page = studio.assembly("horizons", inputs, options, 8000)
+    page = studio.assembly("horizons", inputs, options, 6000)
     sheets = [t for o in options if "=" in o for t in read_surface(studio.path(o.split("=")[1]))]
     block = read_surface(studio.path(next(iter(inputs.values()))))
-    surfaces = [layer_of(behind(block, -55, 22), MATERIAL_COLOURS[0]), layer_of(sheets, SHEET_COLOUR)]
-    studio.pair("horizons", page, ("look=-55,22,2", surfaces), ("cut=y,0.5&look=-55,22,1.9", ()))
+    surfaces = [layer_of(behind(block, 28, 22, "y"), MATERIAL_COLOURS[0]), layer_of(sheets, SHEET_COLOUR)]
+    studio.pair("horizons", page, ("up=y&look=28,22,2.7", surfaces), ("up=y&cut=z,0.5&look=28,22,2.4", ()))
 
 
 PICTURES_BY_NAME = {make.__name__: make for make in (scan, organs, part, layers, report, heater, rock, vessel, fan, horizons)}
