@@ -296,6 +296,7 @@ TEST(Patches, OfTheHeaterNameEachContactAfterBothParts) {
   EXPECT_NE(a.err.find("8 pairs of patches that share faces in contacts (named after both; the first: \""),
             std::string::npos)
       << a.err;
+  EXPECT_EQ(a.err.find("not certain"), std::string::npos) << a.err;
   std::set<std::string> names = qualified(parts);
   for (const std::string& all_shared :
        {"below:maxY", "left:maxX", "left:minY", "left:maxY", "core:minX", "core:maxX", "core:minY",
