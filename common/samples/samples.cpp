@@ -108,19 +108,26 @@ TriangleMesh knot() {
   });
 }
 
-/// The cube [-1, 1]^3, each face divided into n x n squares.
-TriangleMesh cube(Index n) {
+/// A box, each side divided into rectangles: `counts` along each axis. Its triangles are in the order of the
+/// sides low x, high x, low y, high y, low z, high z.
+TriangleMesh box(const Vec3& low, const Vec3& high, const std::array<Index, 3>& counts) {
   TriangleMesh mesh;
   std::map<std::array<Index, 3>, Index> ids;
   const auto id = [&](const std::array<Index, 3>& at) {
     const auto [entry, is_new] = ids.try_emplace(at, static_cast<Index>(mesh.points.size()));
-    if (is_new) mesh.points.push_back(Vec3(2.0 * at[0] / n - 1, 2.0 * at[1] / n - 1, 2.0 * at[2] / n - 1));
+    Vec3 p;
+    // The far end exactly, so that boxes with a side in common meet.
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      const Index step = at[static_cast<std::size_t>(k)], count = counts[static_cast<std::size_t>(k)];
+      p[k] = step == count ? high[k] : low[k] + (high[k] - low[k]) * step / count;
+    }
+    if (is_new) mesh.points.push_back(p);
     return entry->second;
   };
   for (std::size_t axis = 0; axis < 3; ++axis)
-    for (const Index side : {Index{0}, n})
-      for (Index i = 0; i < n; ++i)
-        for (Index j = 0; j < n; ++j) {
+    for (const Index side : {Index{0}, counts[axis]})
+      for (Index i = 0; i < counts[(axis + 1) % 3]; ++i)
+        for (Index j = 0; j < counts[(axis + 2) % 3]; ++j) {
           const auto corner = [&](Index u, Index v) {
             std::array<Index, 3> at;
             at[axis] = side;
@@ -138,6 +145,22 @@ TriangleMesh cube(Index n) {
             mesh.triangles.push_back({a, d, c});
           }
         }
+  return mesh;
+}
+
+/// The cube [-1, 1]^3, each face divided into n x n squares.
+TriangleMesh cube(Index n) { return box(Vec3::Constant(-1), Vec3::Constant(1), {n, n, n}); }
+
+/// A part of the heater, with its sides as groups. Parts that touch are divided differently.
+TriangleMesh heater_part(const Vec3& low, const Vec3& high, const std::array<Index, 3>& counts) {
+  TriangleMesh mesh = box(low, high, counts);
+  for (const char* name : {"minX", "maxX", "minY", "maxY", "minZ", "maxZ"}) mesh.groups.push_back({0, name});
+  for (std::size_t side = 0; side < 6; ++side) {
+    const std::size_t axis = side / 2;
+    mesh.triangle_groups.insert(mesh.triangle_groups.end(),
+                                std::size_t{2} * counts[(axis + 1) % 3] * counts[(axis + 2) % 3],
+                                static_cast<std::uint32_t>(side));
+  }
   return mesh;
 }
 
@@ -293,6 +316,26 @@ const std::vector<NamedSample>& samples() {
       {"random-interior-small", +[] { return random_interior(3, 170, 0.25); }},
       {"random-interior-large", +[] { return random_interior(14, 30000, 0.07); }},
       {"organs", organs},
+      {"heater_below",
+       +[] {
+         return heater_part({0, 0, 0}, {4, 1, 1}, {8, 2, 3});
+       }},
+      {"heater_left",
+       +[] {
+         return heater_part({0, 1, 0}, {1.2, 1.5, 1}, {3, 1, 2});
+       }},
+      {"heater_core",
+       +[] {
+         return heater_part({1.2, 1, 0}, {2.8, 1.5, 1}, {4, 2, 3});
+       }},
+      {"heater_right",
+       +[] {
+         return heater_part({2.8, 1, 0}, {4, 1.5, 1}, {3, 2, 4});
+       }},
+      {"heater_above",
+       +[] {
+         return heater_part({0, 1.5, 0}, {4, 2.6, 1}, {7, 3, 2});
+       }},
   };
   return all;
 }

@@ -14,6 +14,9 @@ namespace tetwright {
 /// Names of the built-in samples.
 /// - Surfaces around the origin, closed and oriented outwards: sphere, torus, cube, two_spheres, knot; and
 ///   open_sphere, a sphere with a hole.
+/// - Five boxes that share faces: heater_left, heater_core and heater_right in a row, between the air
+/// heater_below
+///   and heater_above. The sides of each are groups, minX to maxZ.
 /// - Tet meshes, all tets positive: tet_cube, two_materials (two halves of a box), layers (four materials on
 ///   top of each other); random_interior, random_interior_small and random_interior_large (a coarse skin
 ///   filled with 34,000, 1,000 and 200,000 tets between random points, two in five of them slivers and

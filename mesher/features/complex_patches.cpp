@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "mesher/complex/sheet_borders.h"
+#include "mesher/input/contact_groups.h"
 #include "tetwright/error.h"
 
 namespace tetwright {
@@ -64,6 +65,7 @@ ComplexPatches complex_patches(const MesherInput& input, const std::vector<Surfa
                                const SheetPatches& of_sheets) {
   const LabelledComplex& complex = *input.complex;
   ComplexPatches out;
+  const FaceGroups groups(input);
   using BodyPatch = std::pair<std::uint32_t, std::uint16_t>;
   std::map<std::pair<std::size_t, std::vector<BodyPatch>>, std::uint16_t> numbers;
   for (Index f = 0; f < complex.faces.size(); ++f) {
@@ -74,13 +76,8 @@ ComplexPatches complex_patches(const MesherInput& input, const std::vector<Surfa
     const std::size_t sheet =
         out.sheets.try_emplace(std::minmax(face.behind, face.front), out.sheets.size()).first->second;
     std::vector<BodyPatch> of_bodies;
-    SurfaceRegion group;
-    for (const LabelledComplex::Source& s : complex.sources(f)) {
-      const MesherInput::Body& body = input.bodies[s.body];
+    for (const LabelledComplex::Source& s : complex.sources(f))
       of_bodies.emplace_back(s.body, patches[s.body].patches[s.triangle]);
-      if (body.surface.groups.empty()) continue;
-      if (const SurfaceRegion& own = body.groups[body.surface.groups[s.triangle]]) group = own;
-    }
     std::sort(of_bodies.begin(), of_bodies.end());
     const bool rough = std::any_of(of_bodies.begin(), of_bodies.end(), [&](const BodyPatch& p) {
       return !patches[p.first].rough.empty() && patches[p.first].rough[p.second];
@@ -90,7 +87,7 @@ ComplexPatches complex_patches(const MesherInput& input, const std::vector<Surfa
     require_numbers(numbers.size(), input);
     if (added) {
       out.sheet_of_patch.push_back(sheet);
-      out.groups.push_back(group);
+      out.groups.push_back(groups.of(f));
       out.rough.push_back(rough);
     }
     out.patches.push_back(number->second);

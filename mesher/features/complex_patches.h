@@ -28,8 +28,7 @@ struct ComplexPatches {
   /// Patches from this number on continue inner sheets beyond their free borders, see continue_sheets(). They
   /// belong to the same sheet.
   std::uint16_t first_continued = 0;
-  /// Surface region of the input that each patch belongs to, or none. Where two bodies have one, that of the
-  /// later body.
+  /// Surface region of the input that each patch belongs to, or none; see FaceGroups.
   std::vector<SurfaceRegion> groups;
   std::vector<std::uint8_t> rough;  ///< of each patch, see SurfacePatches::rough
 };

@@ -9,6 +9,7 @@
 
 #include "common/message_text.h"
 #include "mesher/complex/labelled_complex.h"
+#include "mesher/input/contact_groups.h"
 #include "mesher/input/surface_measures.h"
 #include "mesher/tuning/complex_tuning.h"
 #include "tetwright/error.h"
@@ -239,6 +240,7 @@ void join_bodies(MesherInput& input, const SheetSoup& sheets, const ContactOptio
     first_source += count;
   }
   input.complex = std::make_shared<const LabelledComplex>(std::move(found.complex));
+  if (!input.groups.empty()) name_contact_groups(input);
 }
 
 }  // namespace tetwright

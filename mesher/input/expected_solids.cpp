@@ -91,6 +91,29 @@ SurfaceSolid own_solid(const RepairedSurface& s) {
   return {std::move(solid), flaw};
 }
 
+/// The solid of a region, from the faces of the complex; nothing if it touches itself in an edge or a point.
+std::optional<SolidShape> solid_in_complex(const LabelledComplex& complex, std::size_t region) {
+  std::vector<Vec3> points;
+  std::vector<Triangle> triangles;
+  std::vector<Index> number(complex.points.size(), no_index);
+  for (const LabelledComplex::Face& f : complex.faces) {
+    if (f.behind != region && f.front != region) continue;
+    Triangle ids = f.ids;
+    if (f.front == region) std::swap(ids[1], ids[2]);
+    for (Index& p : ids) {
+      if (number[p] == no_index) {
+        number[p] = static_cast<Index>(points.size());
+        points.push_back(complex.points[p]);
+      }
+      p = number[p];
+    }
+    triangles.push_back(ids);
+  }
+  SolidShape solid = solid_shape(points, triangles);
+  if (!solid.manifold) return {};
+  return solid;
+}
+
 /// The solid of a body that all later ones carve. `own` has the solid of each body before carving.
 SurfaceSolid solid_of(const MesherInput& input, std::size_t number, const std::vector<SurfaceSolid>& own) {
   const RepairedSurface& body = input.bodies[number].surface;
@@ -109,7 +132,11 @@ SurfaceSolid solid_of(const MesherInput& input, std::size_t number, const std::v
     later_solids.push_back(*own[k].shape);
   }
   if (!solid.shape || later.empty()) return solid;
-  if (meet(body, later)) return {{}, solid.flaw == SurfaceFlaw::none ? SurfaceFlaw::meeting : solid.flaw};
+  if (meet(body, later)) {
+    if (solid.flaw != SurfaceFlaw::none) return {{}, solid.flaw};
+    return {input.complex ? solid_in_complex(*input.complex, number + 1) : std::nullopt,
+            SurfaceFlaw::meeting};
+  }
   solid.shape = carved_solid(body, *own[number].shape, later, later_solids);
   return solid;
 }

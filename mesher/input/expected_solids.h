@@ -12,8 +12,8 @@ namespace tetwright {
 
 /// The solid of a material, derived from its surface and the surfaces that carve it.
 struct SurfaceSolid {
-  /// Input units. Nothing for SurfaceFlaw::open and meeting, and if an edge does not have exactly two
-  /// triangles or a point has more than one fan of them.
+  /// Input units. Nothing for SurfaceFlaw::open, for meeting surfaces that were not joined, and if an edge
+  /// does not have exactly two triangles or a point has more than one fan of them.
   std::optional<SolidShape> shape;
   SurfaceFlaw flaw = SurfaceFlaw::none;  ///< the first one found; none: `shape` is certain
 };

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Solids that share faces, cross, touch or nearly fit."""
 import dataclasses
+import re
 
 import numpy as np
 
@@ -306,5 +307,10 @@ def _():
         inputs.append(Input(name, (points, triangles), ".obj", groups))
         for group in sorted(set(groups) - {"shared"}):
             patches[f"{name}:{group}"] = sf.area(points, triangles[np.array(groups) == group])
-    partition = carved([sh.box(low, high) for low, high, _ in HEATER.values()])
+    names, bodies = list(HEATER), [sh.box(low, high) for low, high, _ in HEATER.values()]
+    partition = carved(bodies)
+    for key, row in partition.topology().items():
+        if (pair := re.fullmatch(r"interface (\d+)\|(\d+)", key)) and row is not None:
+            first, second = (names[int(tag) - 1] for tag in pair.groups())
+            patches[f"{first}:shared+{second}:shared"] = row["area"]
     return of_partition(partition, inputs, patches=patches)

@@ -73,6 +73,7 @@ enum class DiagnosticCode : std::uint8_t {
   components_separated,
   cells_separated,
   names_qualified,
+  patches_joined,
   bodies_overlap,
   bodies_not_joined,
   sheet_cut_off,

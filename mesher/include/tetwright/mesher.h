@@ -87,7 +87,7 @@ struct ExpectedSolid {
   MaterialTag tag = 0;
   SurfaceFlaw flaw = SurfaceFlaw::none;
   SolidShape shape;  ///< input units; derived from the surfaces as given, with a flaw from the distances
-  /// A second estimate, derived from the surfaces if they are closed, manifold and do not meet each other.
+  /// A second estimate, derived from the surfaces if they are closed, manifold and joined where they meet.
   std::optional<SolidShape> by_flawed_surface = {};
   /// Shells smaller than this (input units cubed) are not significant; with a flaw, this is the volume of a
   /// cell.

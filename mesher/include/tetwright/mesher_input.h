@@ -239,11 +239,15 @@ struct MesherInput {
     RepairedSurface surface;
     std::vector<SurfaceRegion> groups;  ///< groups of the file, see RepairedSurface::groups
   };
-  /// A group of triangles of a file, before any repair.
+  /// A group of triangles of a file, before any repair, without faces that two bodies share if each has them
+  /// in a group; or these faces.
   struct Group {
     SurfaceRegion group;
     double area = 0;            ///< input units squared
     Vec3 place = Vec3::Zero();  ///< the centre of its largest triangle, input units
+    /// The groups of both bodies that the shared faces are in, in the order of the bodies; empty for a group
+    /// of a file.
+    std::vector<SurfaceRegion> of = {};
   };
   std::vector<Body> bodies;           ///< later bodies carve earlier ones
   std::vector<MaterialLayer> layers;  ///< of the first body, outermost first
@@ -253,7 +257,8 @@ struct MesherInput {
     std::string file;
   };
   std::vector<Diagnostic> findings;
-  std::vector<Group> groups;  ///< groups with triangles, ascending; repair may remove all of one
+  /// Groups with triangles, ascending; repair may remove all of one.
+  std::vector<Group> groups;
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< bounding box of all bodies, input units
   /// All surfaces as one complex, if some of them meet.
   std::shared_ptr<const LabelledComplex> complex = {};
@@ -289,8 +294,9 @@ enum class SurfaceFlaw : std::uint8_t {
 ///
 /// Closed bodies that meet are then joined (ContactOptions): their surfaces are cut along the curves in which
 /// they meet, and within the tolerance moved onto each other. With OverlapRule::material their common volumes
-/// are appended as bodies with the smallest free tags from 1 up. Sheets become faces of the complex; their
-/// parts that are in no body, or on the boundary of one, are reported.
+/// are appended as bodies with the smallest free tags from 1 up. Faces in a group of each of two bodies
+/// become a group of their own, called NAME+NAME. Sheets become faces of the complex; their parts that are in
+/// no body, or on the boundary of one, are reported.
 ///
 /// \param progress may be null
 /// \pre non-empty names differ, and so do tags

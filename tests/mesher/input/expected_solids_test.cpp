@@ -51,6 +51,18 @@ TEST(ExpectedSolids, LaterBodiesCarveEarlierOnes) {
   expect_solid(solids[4], 1, 1, 0, 0);
 }
 
+TEST(ExpectedSolids, JoinedBodiesHaveThoseOfTheirRegions) {
+  // The second stands on the first; the third crosses both.
+  const std::vector<MaterialSurface> surfaces{{"a", 1, make_box(Vec3(0, 0, 0), Vec3(4, 4, 1)), "a"},
+                                              {"b", 2, make_box(Vec3(1, 1, 1), Vec3(3, 3, 3)), "b"},
+                                              {"c", 3, make_box(Vec3(-1, 1.5, 0.5), Vec3(5, 2.5, 1.5)), "c"}};
+  const auto solids = expected_solids(make_mesher_input(surfaces));
+  ASSERT_EQ(solids.size(), 3u);
+  expect_solid(solids[0], 16 - 4 * 1 * 0.5, 1, 0, 0, SurfaceFlaw::meeting);
+  expect_solid(solids[1], 8 - 2 * 1 * 0.5, 1, 0, 0, SurfaceFlaw::meeting);
+  expect_solid(solids[2], 6, 1, 0, 0);
+}
+
 TEST(ExpectedSolids, LaterBodiesCoverPartsAndCavities) {
   const TriangleMesh second = make_box(Vec3(20, 0, 0), Vec3(21, 1, 1)),
                      around = make_box(Vec3(19, -1, -1), Vec3(22, 2, 2));

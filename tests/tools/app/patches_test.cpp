@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -272,14 +273,51 @@ TEST(Patches, OfOneNameInBoxesSideBySideAreQualified) {
   const TemporaryFolder f;
   write(f / "left.stl", sides({0, 0, 0}, {1, 1, 1}));
   write(f / "right.stl", sides({1, 0, 0}, {2, 1, 1}));
-  const Answer a = run("mesh " + (f / "left.stl") + " " + (f / "right.stl") + " --resolution 24 -o " +
-                       (f / "a.msh") + " --accept-changes");
-  EXPECT_LE(a.status, 1) << a.err;
+  const Answer a =
+      run("mesh " + (f / "left.stl") + " " + (f / "right.stl") + " --resolution 24 -o " + (f / "a.msh"));
+  EXPECT_EQ(a.status, 0) << a.err;
+  std::set<std::string> names = qualified({"left", "right"});
+  names.erase("left:maxX");
+  names.erase("right:minX");
+  names.insert("left:maxX+right:minX");
+  EXPECT_EQ(names_in(read_tet_mesh(f / "a.msh").mesh), names);
+}
+
+TEST(Patches, OfTheHeaterNameEachContactAfterBothParts) {
+  const TemporaryFolder f;
+  const std::vector<std::string> parts{"below", "left", "core", "right", "above"};
+  std::string call = "prepare";
+  for (const std::string& part : parts) {
+    ASSERT_EQ(run("sample heater_" + part + " -o " + (f / part + ".obj")).status, 0);
+    call += part == "below" ? " " + (f / "below.obj") : " --material " + part + "=" + (f / part + ".obj");
+  }
+  const Answer a = run(call + " --target-tets 3000 -o " + (f / "a.msh") + " --stats " + (f / "s.json"));
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_NE(a.err.find("8 pairs of patches that share faces in contacts (named after both; the first: \""),
+            std::string::npos)
+      << a.err;
+  EXPECT_EQ(a.err.find("not certain"), std::string::npos) << a.err;
+  std::set<std::string> names = qualified(parts);
+  for (const std::string& all_shared :
+       {"below:maxY", "left:maxX", "left:minY", "left:maxY", "core:minX", "core:maxX", "core:minY",
+        "core:maxY", "right:minX", "right:minY", "right:maxY", "above:minY"})
+    names.erase(all_shared);
+  const std::map<std::string, double> contacts{
+      {"below:maxY+left:minY", 1.2}, {"below:maxY+core:minY", 1.6}, {"below:maxY+right:minY", 1.2},
+      {"left:maxX+core:minX", 0.5},  {"core:maxX+right:minX", 0.5}, {"left:maxY+above:minY", 1.2},
+      {"core:maxY+above:minY", 1.6}, {"right:maxY+above:minY", 1.2}};
+  for (const auto& [name, area] : contacts) names.insert(name);
   const TetMesh mesh = read_tet_mesh(f / "a.msh").mesh;
-  const std::set<std::string> all = qualified({"left", "right"}), names = names_in(mesh);
-  // Both sides of the interface lie on it, and one of them may get all of its faces.
-  EXPECT_GE(names.size(), all.size() - 1);
-  for (const std::string& name : names) EXPECT_TRUE(all.contains(name)) << name;
+  EXPECT_EQ(names_in(mesh), names);
+  EXPECT_EQ(mesh.material_names.size(), 5U);
+  const auto stats = nlohmann::json::parse(contents(f / "s.json"));
+  for (const nlohmann::json& patch : stats.at("patches")) {
+    EXPECT_NEAR(patch.at("area").get<double>(), patch.at("input_area").get<double>(), 1e-6) << patch;
+    if (const auto contact = contacts.find(patch.at("name")); contact != contacts.end()) {
+      EXPECT_NEAR(patch.at("area").get<double>(), contact->second, 1e-6) << patch;
+    }
+  }
+  EXPECT_EQ(stats.at("creases").at("lost_corners"), 0) << stats.at("creases");
 }
 
 TEST(Patches, OfOneFileKeepTheirNames) {
