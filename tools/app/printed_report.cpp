@@ -102,7 +102,6 @@ std::string lost_curves_line(const FeatureReport& f) {
   };
   add(Fate::faded, "fade out");
   add(Fate::small, "at patches that are too small");
-  add(Fate::noise, "among noise");
   add(Fate::given_up, "given up");
   return lost.empty() ? "" : printable("curves of '" + f.name + "' that are not kept: " + lost);
 }

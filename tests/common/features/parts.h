@@ -2,8 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 #include <vector>
 
 #include "common/random.h"
@@ -108,6 +110,24 @@ inline TriangleMesh folded_strip(Index sharp) {
       s.triangles.push_back({a, a + 1, a + 4});
       s.triangles.push_back({a, a + 4, a + 3});
     }
+  return s;
+}
+
+/// A block whose top is a folded_strip().
+inline TriangleMesh folded_block(Index sharp) {
+  TriangleMesh s = folded_strip(sharp);
+  const auto below = static_cast<Index>(s.points.size());
+  for (Index p = 0; p < below; ++p) s.points.emplace_back(s.points[p].x(), s.points[p].y(), -2);
+  const std::vector<Triangle> top = s.triangles;
+  for (const auto& [a, b, c] : top) s.triangles.push_back({below + a, below + c, below + b});
+  std::set<std::array<Index, 2>> edges;
+  for (const Triangle& t : top)
+    for (int k = 0; k < 3; ++k) edges.insert({t[k], t[(k + 1) % 3]});
+  for (const auto& [a, b] : edges) {
+    if (edges.contains({b, a})) continue;
+    s.triangles.push_back({b, a, below + a});
+    s.triangles.push_back({b, below + a, below + b});
+  }
   return s;
 }
 
