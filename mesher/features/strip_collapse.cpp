@@ -54,15 +54,29 @@ class StripCollapse {
                 SheetParts* parts)
       : mesh_(mesh), surface_(surface), curves_(curves), cell_(cell), parts_(parts) {}
 
-  /// \param all whether edges that do not cross their strip are collapsed, too: what is left of strips has
-  ///   all its points on the curve
+  /// How far the collapse goes.
+  enum class Effort : std::uint8_t {
+    across,    ///< edges across strips only
+    all,       ///< all edges of their faces: what is left of strips has all its points on the curve
+    make_room  ///< all edges, and points around an edge make room for the collapse
+  };
+
   /// \return whether anything was collapsed
-  bool run(bool all) {
+  bool run(Effort effort) {
     const std::vector<Triangle> strip = strip_faces();
     if (strip.empty()) return false;
-    gather(strip);
+    std::set<Index> points = points_of(strip);
+    gather(points);
+    makes_room_ = effort == Effort::make_room;
+    if (makes_room_) {
+      for (const auto& [p, tets] : at_)
+        for (const Index t : tets) points.insert(tets_[t].begin(), tets_[t].end());
+      points.erase(beyond_);
+      gather(points);
+    }
     bool any = false;
-    for (const auto& [u, v] : edges_of(strip, all)) any |= collapse(current(u), current(v));
+    for (const auto& [u, v] : edges_of(strip, effort != Effort::across))
+      any |= collapse(current(u), current(v));
     if (any || split_) finish();
     return any;
   }
@@ -107,14 +121,20 @@ class StripCollapse {
     return found;
   }
 
-  /// Collects the tets at the strips' points. Boundary faces become tets with a common point beyond the
-  /// boundary, so that the mesh has no border.
-  void gather(const std::vector<Triangle>& strip) {
+  static std::set<Index> points_of(const std::vector<Triangle>& faces) {
+    std::set<Index> points;
+    for (const Triangle& f : faces) points.insert(f.begin(), f.end());
+    return points;
+  }
+
+  /// Collects the tets at some points, and the regions there. Boundary faces become tets with a common point
+  /// beyond the boundary, so that the mesh has no border.
+  void gather(const std::set<Index>& points) {
     tets_ = mesh_.tets;
     material_of_ = mesh_.materials;
     if (parts_) part_of_ = parts_->of_tets;
-    for (const Triangle& f : strip)
-      for (const Index p : f) at_[p];
+    at_.clear();
+    for (const Index p : points) at_[p];
     const auto list = [&](Index t) {
       for (const Index p : tets_[t])
         if (const auto known = at_.find(p); known != at_.end()) known->second.push_back(t);
@@ -129,6 +149,7 @@ class StripCollapse {
     material_of_.resize(tets_.size());
     if (parts_) part_of_.resize(tets_.size());
     removed_.assign(tets_.size(), 0);
+    regions_.clear();
     for (const auto& [p, tets] : at_) {
       Regions& own = regions_[p];
       for (const Index t : tets) own.insert(label(t));
@@ -247,19 +268,22 @@ class StripCollapse {
   /// The worst shape of the tets that stay if both points move to a position: the smallest solid angle, or
   /// below 0 the smallest volume over the cube of the cell, if one would not be positive.
   double worst_shape(Index u, Index v, const Vec3& position) const {
+    return std::min(worst_shape_at(u, u, v, position), worst_shape_at(v, u, v, position));
+  }
+  /// As above, but only of the tets at a point.
+  double worst_shape_at(Index p, Index u, Index v, const Vec3& position) const {
     double worst = HUGE_VAL;
-    for (const Index p : {u, v})
-      for (const Index t : at_.at(p)) {
-        const Tet& ids = tets_[t];
-        if (removed_[t] || !is_real(ids) || (has(ids, u) && has(ids, v))) continue;
-        std::array<Vec3, 4> c;
-        for (std::size_t k = 0; k < 4; ++k) c[k] = ids[k] == u || ids[k] == v ? position : at(ids[k]);
-        if (orient3d(c[0], c[1], c[2], c[3]) > 0)
-          worst = std::min(worst, min_solid_angle(c[0], c[1], c[2], c[3]));
-        else
-          worst = std::min(
-              worst, -std::abs((c[1] - c[0]).cross(c[2] - c[0]).dot(c[3] - c[0])) / (cell_ * cell_ * cell_));
-      }
+    for (const Index t : at_.at(p)) {
+      const Tet& ids = tets_[t];
+      if (removed_[t] || !is_real(ids) || (has(ids, u) && has(ids, v))) continue;
+      std::array<Vec3, 4> c;
+      for (std::size_t k = 0; k < 4; ++k) c[k] = ids[k] == u || ids[k] == v ? position : at(ids[k]);
+      if (orient3d(c[0], c[1], c[2], c[3]) > 0)
+        worst = std::min(worst, min_solid_angle(c[0], c[1], c[2], c[3]));
+      else
+        worst = std::min(
+            worst, -std::abs((c[1] - c[0]).cross(c[2] - c[0]).dot(c[3] - c[0])) / (cell_ * cell_ * cell_));
+    }
     return worst;
   }
 
@@ -295,26 +319,71 @@ class StripCollapse {
     return places;
   }
 
-  /// The candidate with the best shapes; if none has tets of positive volume, what is found from there by a
-  /// compass search (Kolda, Lewis and Torczon 2003, section 1).
-  std::optional<Vec3> best_position(Index u, Index v) const {
-    double best = -HUGE_VAL;
-    Vec3 position = at(u);
-    for (const Vec3& p : candidates(u, v))
-      if (const double worst = worst_shape(u, v, p); worst > best) best = worst, position = p;
-    const bool is_free = !regions_.at(u).contains(std::nullopt) && !regions_.at(v).contains(std::nullopt);
-    for (double step = Strips::first_step;
-         is_free && best <= Strips::min_solid_angle && step > Strips::last_step;) {
+  bool is_inner(Index p) const { return !regions_.at(p).contains(std::nullopt); }
+
+  /// Moves a position to where `shape` is larger, by a compass search (Kolda, Lewis and Torczon 2003, section
+  /// 1), until it exceeds the limit.
+  /// \param best the shape at the position; receives that of the result
+  template <class Shape>
+  void search(Vec3& position, double& best, const Shape& shape) const {
+    for (double step = Strips::first_step; best <= Strips::min_solid_angle && step > Strips::last_step;) {
       const Vec3 from = position;
       for (int x = -1; x <= 1; ++x)
         for (int y = -1; y <= 1; ++y)
           for (int z = -1; z <= 1; ++z) {
             const Vec3 p = from + step * cell_ * Vec3(x, y, z);
-            if (const double worst = worst_shape(u, v, p); worst > best) best = worst, position = p;
+            if (const double worst = shape(p); worst > best) best = worst, position = p;
           }
       if (position == from) step /= 2;
     }
-    return best > Strips::min_solid_angle ? std::optional(position) : std::nullopt;
+  }
+
+  /// Inner points around an edge, except its ends.
+  std::set<Index> points_around(Index u, Index v) const {
+    std::set<Index> around;
+    for (const Index p : {u, v})
+      for (const Index t : at_.at(p))
+        if (!removed_[t])
+          for (const Index q : tets_[t])
+            if (q != u && q != v && q != beyond_ && at_.contains(q) && is_inner(q)) around.insert(q);
+    return around;
+  }
+
+  /// The candidate with the best shapes; if none has tets of positive volume, what is found from there, and
+  /// then, if points make room, what is found while the points around move, too.
+  std::optional<Vec3> best_position(Index u, Index v) {
+    double best = -HUGE_VAL;
+    Vec3 position = at(u);
+    for (const Vec3& p : candidates(u, v))
+      if (const double worst = worst_shape(u, v, p); worst > best) best = worst, position = p;
+    const auto shape = [&](const Vec3& p) { return worst_shape(u, v, p); };
+    const bool is_free = is_inner(u) && is_inner(v);
+    if (is_free) search(position, best, shape);
+    if (best > Strips::min_solid_angle) return position;
+    if (!makes_room_) return {};
+
+    const std::set<Index> around = points_around(u, v);
+    std::map<Index, Vec3> before;
+    for (const Index q : around) before[q] = at(q);
+    for (int sweep = 0; sweep < Strips::max_sweeps && best <= Strips::min_solid_angle; ++sweep) {
+      for (const Index q : around) {
+        Vec3 moved = at(q);
+        const auto shape_at = [&](const Vec3& p) {
+          mesh_.points[q] = p;
+          return worst_shape_at(q, u, v, position);
+        };
+        double own = shape_at(moved);
+        search(moved, own, shape_at);
+        mesh_.points[q] = moved;
+      }
+      best = worst_shape(u, v, position);
+      if (is_free) search(position, best, shape);
+    }
+    bool valid = best > Strips::min_solid_angle;
+    for (const Index q : around) valid &= worst_shape_at(q, u, v, position) > 0;
+    if (valid) return position;
+    for (const auto& [q, p] : before) mesh_.points[q] = p;
+    return {};
   }
 
   bool collapse(Index u, Index v) {
@@ -388,6 +457,7 @@ class StripCollapse {
   std::map<Index, Regions> regions_;        ///< at each point of a strip
   std::unordered_map<Index, Index> moved_to_;
   bool split_ = false;
+  bool makes_room_ = false;
 };
 
 }  // namespace
@@ -396,11 +466,12 @@ void collapse_strips(TetMesh& mesh, const LabelledComplex& complex, const Featur
                      double cell, SheetParts* parts) {
   const ProjectionTree curves = branching_curves(complex);
   if (curves.empty()) return;
-  bool all = false;
+  using Effort = StripCollapse::Effort;
+  Effort effort = Effort::across;
   for (int round = 0; round < Strips::max_rounds; ++round) {
-    if (StripCollapse(mesh, surface, curves, cell, parts).run(all)) continue;
-    if (all) return;
-    all = true;
+    if (StripCollapse(mesh, surface, curves, cell, parts).run(effort)) continue;
+    if (effort == Effort::make_room) return;
+    effort = effort == Effort::across ? Effort::all : Effort::make_room;
   }
 }
 

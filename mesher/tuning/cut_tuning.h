@@ -123,12 +123,14 @@ struct CutTuning {
     /// Faces farther than this from a sheet between their regions, cells, are strips.
     static constexpr double sheet_reach = 1.5;
     /// Tets keep this solid angle, sr, when edges are collapsed; fitting and simplification improve them.
-    static constexpr double min_solid_angle = 1e-6;
+    static constexpr double min_solid_angle = 1e-5;
     /// Max rounds: each may make edges of others collapsible.
     static constexpr int max_rounds = 12;
     /// Steps of the search for a position, cells: from about the width of a strip to below what changes
     /// shapes.
     static constexpr double first_step = 0.5, last_step = 0.01;
+    /// Max sweeps over the points that make room: later ones gain little.
+    static constexpr int max_sweeps = 6;
     /// Max edges that are split so that an edge may be collapsed: mostly it is one.
     static constexpr std::size_t max_splits = 4;
   };

@@ -172,7 +172,7 @@ TEST(InnerSheets, WithOneSideAreRefused) {
 }
 
 /// The sheets of a mesh by name.
-std::map<std::string, SheetStatistics> sheets_of(const TetMesh& mesh) {
+std::map<std::string, SheetStatistics> found_sheets(const TetMesh& mesh) {
   std::map<std::string, SheetStatistics> found;
   for (const SheetStatistics& s : sheet_statistics(mesh)) found[s.name] = s;
   return found;
@@ -186,7 +186,7 @@ TEST(InnerSheets, CrossInACurveOfFourFaces) {
     const TetMesh mesh = mesh_of(input, resolution).mesh;
     EXPECT_EQ(broken_promise(mesh.points, mesh.tets), "");
     EXPECT_TRUE(misplaced_sheet_faces(mesh).empty());
-    const std::map<std::string, SheetStatistics> found = sheets_of(mesh);
+    const std::map<std::string, SheetStatistics> found = found_sheets(mesh);
     ASSERT_EQ(found.size(), 2U);
     EXPECT_NEAR(found.at("first").area, 0.4 * std::hypot(1.2, 0.4), 2e-3);
     EXPECT_NEAR(found.at("second").area, 0.6 * std::hypot(0.2, 0.95), 2e-3);
@@ -206,10 +206,10 @@ TEST(InnerSheets, BranchInACurveOfThreeFaces) {
   const TriangleMesh fan = joined(joined(parallelogram({1, 0.7, 0.3}, {0.5, 0, 0}, {0, 0, 0.4}),
                                          parallelogram({1, 0.7, 0.3}, {-0.3, 0.4, 0}, {0, 0, 0.4})),
                                   parallelogram({1, 0.7, 0.3}, {-0.3, -0.4, 0}, {0, 0, 0.4}));
-  const TetMesh mesh = mesh_of(in_box({sheet("fan", fan)}), 20).mesh;
+  const TetMesh mesh = mesh_of(in_box({sheet("fan", fan)}), 40).mesh;
   EXPECT_EQ(broken_promise(mesh.points, mesh.tets), "");
   EXPECT_TRUE(misplaced_sheet_faces(mesh).empty());
-  const std::map<std::string, SheetStatistics> found = sheets_of(mesh);
+  const std::map<std::string, SheetStatistics> found = found_sheets(mesh);
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found.at("fan").area, 0.6, 1e-4);
   EXPECT_EQ(found.at("fan").pieces, 1U);
