@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 
+#include "common/features/crease_chains.h"
 #include "common/features/edge_uses.h"
 #include "common/features/inner_edges.h"
 #include "common/features/surface_noise.h"
@@ -232,28 +233,32 @@ struct FoundParts {
   SurfacePatches found;
   std::vector<Index> parts;
   std::vector<std::uint8_t> noisy;  ///< a flag for each triangle, or empty
+  /// Parts before small ones were merged, or before all were merged as a staircase; or empty.
+  std::vector<Index> before;
 };
 
-FoundParts find_parts(std::span<const Vec3> points, std::span<const Triangle> triangles,
-                      const PatchOptions& options, std::span<const std::uint32_t> groups) {
-  const FeatureAngle& angle = options.angle;
-  using Rule = FeatureAngle::Rule;
+CreaseChain::Fate fate_of(const InnerEdge& e, const FoundParts& result) {
+  using Fate = CreaseChain::Fate;
+  const auto& [t, u] = e.triangles;
+  if (result.parts[t] != result.parts[u]) return Fate::kept;
+  if (!result.noisy.empty() && (result.noisy[t] || result.noisy[u])) return Fate::noise;
+  if (result.before.empty() || result.before[t] == result.before[u]) return Fate::faded;
+  return result.found.verdict == SurfacePatches::Verdict::staircase ? Fate::given_up : Fate::small;
+}
+
+/// Decides which of the inner edges are borders of parts.
+/// \param sharp radians; edges that turn by more are sharp
+void find_parts(std::span<const Vec3> points, std::span<const Triangle> triangles,
+                const PatchOptions& options, const std::vector<InnerEdge>& edges,
+                const std::vector<std::uint8_t>& on_border, double sharp, FoundParts& result) {
   using Verdict = SurfacePatches::Verdict;
-  FoundParts result;
   SurfacePatches& found = result.found;
-  found.patches.assign(triangles.size(), 0);
-  result.parts = groups.empty() ? std::vector<Index>(triangles.size(), 0) : whole_groups(groups);
-  if (angle.rule == Rule::off || triangles.empty()) return result;
-  const std::vector<EdgeUse> uses = edge_uses(triangles, groups);
-  const std::vector<InnerEdge> edges = inner_edges(points, triangles, uses);
-  const std::vector<std::uint8_t> on_border = points_on_borders(uses, points.size());
-  const bool automatic = angle.rule == Rule::automatic;
-  const double sharp = (automatic ? automatic_angle : angle.degrees) * degree;
+  const bool automatic = options.angle.rule == FeatureAngle::Rule::automatic;
   found.loose_ends_low = loose_ends(edges, on_border, low_share * automatic_angle * degree);
   found.loose_ends_high = loose_ends(edges, on_border, automatic_angle * degree);
   if (std::none_of(edges.begin(), edges.end(), [&](const InnerEdge& e) { return e.turn > sharp; })) {
     found.verdict = Verdict::smooth;
-    return result;
+    return;
   }
   const bool noisy =
       automatic && (found.loose_ends_low > max_loose_low || found.loose_ends_high > max_loose_high);
@@ -264,7 +269,7 @@ FoundParts find_parts(std::span<const Vec3> points, std::span<const Triangle> tr
     found.noisy_share = share_of(result.noisy, triangle_areas(points, triangles));
     if (!merger.has_borders()) {
       found.verdict = Verdict::scan;
-      return result;
+      return;
     }
   }
   // Decided before small parts are merged, since merging depends on the cell size.
@@ -273,11 +278,35 @@ FoundParts find_parts(std::span<const Vec3> points, std::span<const Triangle> tr
       (count > max_patches || count * max_staircase_triangles > triangles.size() ||
        are_of_boxes(edges, sharp))) {
     found.verdict = Verdict::staircase;
-    return result;
+    if (options.list_chains) result.before = merger.parts();
+    return;
   }
   found.verdict = Verdict::part;
+  if (options.list_chains && options.min_area > 0) result.before = merger.parts();
   found.dropped = merger.merge_small(options.min_area);
   result.parts = merger.parts();
+}
+
+FoundParts find_parts(std::span<const Vec3> points, std::span<const Triangle> triangles,
+                      const PatchOptions& options, std::span<const std::uint32_t> groups) {
+  using Rule = FeatureAngle::Rule;
+  FoundParts result;
+  result.found.patches.assign(triangles.size(), 0);
+  result.parts = groups.empty() ? std::vector<Index>(triangles.size(), 0) : whole_groups(groups);
+  if (options.angle.rule == Rule::off || triangles.empty()) return result;
+  const std::vector<EdgeUse> uses = edge_uses(triangles, groups);
+  const std::vector<InnerEdge> edges = inner_edges(points, triangles, uses);
+  const std::vector<std::uint8_t> on_border = points_on_borders(uses, points.size());
+  const double sharp =
+      (options.angle.rule == Rule::automatic ? automatic_angle : options.angle.degrees) * degree;
+  find_parts(points, triangles, options, edges, on_border, sharp, result);
+  if (!options.list_chains) return result;
+  std::vector<SharpEdge> listed;
+  for (const InnerEdge& e : edges)
+    if (e.turn > sharp) listed.push_back({e.ends, e.length, e.turn, fate_of(e, result)});
+  for (const InnerEdge& e : edges_between_groups(points, triangles, uses))
+    if (e.turn > sharp) listed.push_back({e.ends, e.length, e.turn, CreaseChain::Fate::kept_groups});
+  result.found.chains = chains_of(points, listed);
   return result;
 }
 
@@ -318,6 +347,12 @@ SurfacePatches find_patches(std::span<const Vec3> points, std::span<const Triang
   return std::move(found.found);
 }
 
+CreaseChains find_crease_chains(std::span<const Vec3> points, std::span<const Triangle> triangles,
+                                PatchOptions options, std::span<const std::uint32_t> groups) {
+  options.list_chains = true;
+  return std::move(find_parts(points, triangles, options, groups).found.chains);
+}
+
 SurfacePatches find_mesh_patches(TetMesh& mesh, const FeatureAngle& angle, const std::string& file) {
   if (mesh.interfaces.empty()) mesh.interfaces = find_interfaces(mesh);
   std::vector<Triangle> triangles;
@@ -330,7 +365,7 @@ SurfacePatches find_mesh_patches(TetMesh& mesh, const FeatureAngle& angle, const
     groups.push_back(numbers.emplace(std::pair(t.pair(), t.patch), static_cast<std::uint32_t>(numbers.size()))
                          .first->second);
   }
-  FoundParts found = find_parts(mesh.points, triangles, {angle, 0}, groups);
+  FoundParts found = find_parts(mesh.points, triangles, {angle, 0, true}, groups);
   std::map<MaterialPair, std::map<Index, std::uint16_t>> of_pair;
   const std::map<InterfacePatch, SurfaceRegion> given = std::move(mesh.patch_groups);
   mesh.patch_groups.clear();

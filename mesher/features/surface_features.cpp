@@ -34,14 +34,19 @@ std::vector<SurfacePatches> patches_of_bodies(const MesherInput& input, const Me
   for (const MesherInput::Body& body : input.bodies) {
     const RepairedSurface& surface = body.surface;
     const double shown = patch_cell(surface, options, cell);
-    PatchOptions patch_options{options.feature_angle, CellTuning::Patches::min_area * shown * shown};
+    PatchOptions patch_options{options.feature_angle, CellTuning::Patches::min_area * shown * shown, true};
     // Intersections of parts are creases that are not edges of the surface.
     const bool intersecting =
         surface.intersects_itself && options.feature_angle.rule != FeatureAngle::Rule::off;
     if (intersecting) patch_options.angle.rule = FeatureAngle::Rule::off;
     SurfacePatches found =
         find_patches(surface.points, surface.triangles, patch_options, surface.groups, body.file);
-    if (intersecting) found.verdict = SurfacePatches::Verdict::intersecting;
+    if (intersecting) {
+      found.verdict = SurfacePatches::Verdict::intersecting;
+      patch_options.angle = options.feature_angle;
+      found.chains = find_crease_chains(surface.points, surface.triangles, patch_options, surface.groups);
+      found.chains.give_up();
+    }
     count += found.count;
     if (count > max_patches)
       throw InputError(
@@ -79,8 +84,11 @@ void give_up_creases(const MesherInput::Body& body, SurfacePatches& found) {
   if (!found.any()) return;
   PatchOptions options;
   options.angle.rule = FeatureAngle::Rule::off;
+  CreaseChains chains = std::move(found.chains);
   found = find_patches(body.surface.points, body.surface.triangles, options, body.surface.groups, body.file);
   found.verdict = SurfacePatches::Verdict::meeting;
+  found.chains = std::move(chains);
+  found.chains.give_up();
 }
 
 /// Drops the creases of surfaces that meet others. The curves in which they meet are accurate to half a cell

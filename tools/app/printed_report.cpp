@@ -15,7 +15,7 @@ namespace tetwright {
 namespace {
 
 /// printf() into a string of at most 63 bytes.
-std::string text(const char* format, ...) {
+[[gnu::format(printf, 1, 2)]] std::string text(const char* format, ...) {
   char buffer[64];
   va_list arguments;
   va_start(arguments, format);
@@ -52,8 +52,9 @@ std::string sheet_line(const SheetStatistics& s) {
 std::string feature_line(const FeatureReport& f) {
   using Verdict = SurfacePatches::Verdict;
   const auto loose = [&] {
-    return text("%.3g loose ends per 100 edges over 15 degrees, ", 100 * f.found.loose_ends_low) +
-           text("%.3g per 100 over 35", 100 * f.found.loose_ends_high);
+    // An edge has two ends.
+    return text("%.3g %% of the ends of edges over 15 degrees, ", 50 * f.found.loose_ends_low) +
+           text("%.3g %% of those over 35 are loose", 50 * f.found.loose_ends_high);
   };
   std::string line = "features of '" + f.name + "': ";
   switch (f.found.verdict) {
@@ -80,10 +81,29 @@ std::string feature_line(const FeatureReport& f) {
       line += text("%zu patches with sharp edges between them", f.found.count);
       if (f.found.noisy_share > 0)
         line +=
-            text("; on %.3g % of the area", 100 * f.found.noisy_share) + " edges look like those of a scan";
+            text("; on %.3g %% of the area", 100 * f.found.noisy_share) + " edges look like those of a scan";
       break;
   }
   return printable(line);
+}
+
+/// Line such as "curves of 'part' that are not kept: 3 of length 12 fade out, 2 of length 0.5 at patches that
+/// are too small", or nothing if all are kept.
+std::string lost_curves_line(const FeatureReport& f) {
+  using Fate = CreaseChain::Fate;
+  using Verdict = SurfacePatches::Verdict;
+  // The line on the features says so of all curves.
+  if (f.found.verdict == Verdict::scan || f.found.verdict == Verdict::staircase) return {};
+  std::string lost;
+  const auto add = [&](Fate fate, const char* what) {
+    const CreaseChains::Total& total = f.found.chains.total(fate);
+    if (total.count == 0) return;
+    lost += (lost.empty() ? "" : ", ") + text("%zu of length %.4g ", total.count, total.length) + what;
+  };
+  add(Fate::faded, "fade out");
+  add(Fate::small, "at patches that are too small");
+  add(Fate::given_up, "given up");
+  return lost.empty() ? "" : printable("curves of '" + f.name + "' that are not kept: " + lost);
 }
 
 /// Line such as "caps: 2 of 2 holes, 12.3 % of the boundary: cap_1 (area 0.5, flat), cap_2 (area 0.1)".
@@ -157,7 +177,10 @@ void print_report(const CommandLine& line, const PrepareReport& run) {
       [](const MeshStatistics& m) { return text("%.1f - %.1f", m.min_dihedral, m.max_dihedral); });
   std::printf("\n");
   if (run.volume) std::printf("%s\n", volume_line(*run.volume).c_str());
-  for (const FeatureReport& f : run.features) std::printf("%s\n", feature_line(f).c_str());
+  for (const FeatureReport& f : run.features) {
+    std::printf("%s\n", feature_line(f).c_str());
+    if (const std::string lost = lost_curves_line(f); !lost.empty()) std::printf("%s\n", lost.c_str());
+  }
   if (!run.patches.empty()) std::printf("%s\n", patches_line(run.patches).c_str());
   if (run.caps) std::printf("%s\n", caps_line(*run.caps).c_str());
   print_contacts(run.contacts);

@@ -46,6 +46,41 @@ double bound_between(const Vec3& p, const Vec3& q, const ProjectionTree& items, 
   return bound;
 }
 
+ProjectionTree segment_tree(const std::vector<CreaseCurves>& all) {
+  std::vector<ProjectionTree::Item> items;
+  std::vector<Vec3> ends;
+  for (const CreaseCurves& curves : all) {
+    const auto first = static_cast<Index>(ends.size());
+    ends.insert(ends.end(), curves.points.begin(), curves.points.end());
+    for (const auto& [a, b] : curves.segments) items.push_back({{first + a, first + b, first + b}, {}});
+  }
+  return {std::move(ends), std::move(items)};
+}
+
+std::vector<Vec3> interface_points(const TetMesh& mesh) {
+  std::vector<char> used(mesh.points.size(), 0);
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    for (const Index p : t.ids) used[p] = 1;
+  std::vector<Vec3> points;
+  for (std::size_t p = 0; p < used.size(); ++p)
+    if (used[p]) points.push_back(mesh.points[p]);
+  return points;
+}
+
+double diagonal_of(const std::vector<Vec3>& points) {
+  Box3 box;
+  for (const Vec3& p : points) box.add(p);
+  return (box.high - box.low).norm();
+}
+
+/// Calls visit(sample) for samples from p to q.
+template <class Visit>
+void for_each_sample(const Vec3& p, const Vec3& q, double diagonal, const Visit& visit) {
+  const double length = (q - p).norm();
+  const auto steps = std::max(1, static_cast<int>(std::ceil(length / diagonal * places_to_diagonal)));
+  for (int k = 0; k <= steps; ++k) visit(p + (q - p) * (static_cast<double>(k) / steps));
+}
+
 }  // namespace
 
 bool CreaseComparison::same() const {
@@ -57,30 +92,19 @@ CreaseComparison compare_creases(const CreaseCurves& expected, const std::vector
   constexpr double infinity = std::numeric_limits<double>::infinity();
   CreaseComparison result;
   result.diagonal = diagonal;
-  std::vector<ProjectionTree::Item> items;
-  std::vector<Vec3> ends;
-  for (const CreaseCurves& curves : found) {
-    const auto first = static_cast<Index>(ends.size());
-    ends.insert(ends.end(), curves.points.begin(), curves.points.end());
-    for (const auto& [a, b] : curves.segments) items.push_back({{first + a, first + b, first + b}, {}});
-  }
-  const ProjectionTree creases(std::move(ends), std::move(items));
+  const ProjectionTree creases = segment_tree(found);
   std::vector<double> distances;
   for (const auto& [a, b] : expected.segments) {
     const Vec3 &p = expected.points[a], &q = expected.points[b];
-    const double length = (q - p).norm();
-    result.length += length;
-    const auto steps =
-        std::max(1, static_cast<int>(std::ceil(length / result.diagonal * places_to_diagonal)));
-    for (int k = 0; k <= steps; ++k) {
-      const Vec3 at = p + (q - p) * (static_cast<double>(k) / steps);
+    result.length += (q - p).norm();
+    for_each_sample(p, q, diagonal, [&](const Vec3& at) {
       const auto on = creases.nearest(at, {}, infinity);
       distances.push_back(on ? (*on - at).norm() : infinity);
       if (distances.back() > result.max_distance) {
         result.max_distance = distances.back();
         result.place = at;
       }
-    }
+    });
   }
   const double accuracy = std::max(bound_share * result.max_distance, bound_diagonals * result.diagonal);
   const double known = result.max_distance;
@@ -96,7 +120,7 @@ CreaseComparison compare_creases(const CreaseCurves& expected, const std::vector
     result.p99_distance = *at;
   }
   result.corners = expected.corners.size();
-  items.clear();
+  std::vector<ProjectionTree::Item> items;
   for (Index p = 0; p < points.size(); ++p) items.push_back({{p, p, p}, {}});
   const ProjectionTree near_corners({points.begin(), points.end()}, std::move(items));
   for (const Vec3& corner : expected.corners) {
@@ -113,23 +137,30 @@ CreaseComparison compare_creases(const CreaseCurves& expected, const std::vector
 }
 
 CreaseComparison compare_creases(const CreaseCurves& expected, const TetMesh& mesh) {
-  std::vector<char> used(mesh.points.size(), 0);
-  for (const InterfaceTriangle& t : mesh.interfaces)
-    for (const Index p : t.ids) used[p] = 1;
-  Box3 box;
-  std::vector<Vec3> points;
-  for (std::size_t p = 0; p < used.size(); ++p)
-    if (used[p]) {
-      box.add(mesh.points[p]);
-      points.push_back(mesh.points[p]);
-    }
+  const std::vector<Vec3> points = interface_points(mesh);
   if (points.empty()) return {};
   // A crease may run along a curve where three regions meet.
-  CreaseComparison result = compare_creases(expected, {mesh_creases(mesh), mesh_junctions(mesh)}, points,
-                                            (box.high - box.low).norm());
+  CreaseComparison result =
+      compare_creases(expected, {mesh_creases(mesh), mesh_junctions(mesh)}, points, diagonal_of(points));
   for (double* distance : {&result.max_distance, &result.p99_distance})
     if (!std::isfinite(*distance)) *distance = result.diagonal;
   return result;
+}
+
+void measure_chains(std::vector<FeatureReport>& features, const TetMesh& mesh) {
+  const ProjectionTree creases = segment_tree({mesh_creases(mesh), mesh_junctions(mesh)});
+  if (creases.items().empty()) return;
+  const double diagonal = diagonal_of(interface_points(mesh));
+  for (FeatureReport& feature : features)
+    for (CreaseChain& chain : feature.found.chains.longest) {
+      double farthest = 0;
+      for (std::size_t i = 0; i + 1 < chain.line.size(); ++i)
+        for_each_sample(chain.line[i], chain.line[i + 1], diagonal, [&](const Vec3& at) {
+          const auto on = creases.nearest(at, {}, std::numeric_limits<double>::infinity());
+          farthest = std::max(farthest, (*on - at).norm());
+        });
+      if (!chain.line.empty()) chain.distance = farthest;
+    }
 }
 
 }  // namespace tetwright

@@ -213,6 +213,7 @@ void find_changed_creases(const TetMesh& mesh, PrepareRun& run) {
   PrepareReport& report = run.report;
   if (report.creases.segments.empty()) return;
   report.crease_comparison = compare_creases(report.creases, mesh);
+  measure_chains(report.features, mesh);
   const CreaseComparison& c = *report.crease_comparison;
   if (c.same()) return;
   char distance[80];

@@ -10,6 +10,7 @@
 #include "tetwright/prepare_steps.h"
 #include "tetwright/resources.h"
 #include "tools/report/diagnostics_json.h"
+#include "tools/report/features_json.h"
 
 namespace tetwright {
 
@@ -228,20 +229,6 @@ nlohmann::json solids_json(const std::vector<SolidComparison>& all) {
     }
     if (f.place) j.back()["place"] = place_json(*f.place);
   }
-  return j;
-}
-
-nlohmann::json features_json(const std::vector<FeatureReport>& all) {
-  static constexpr const char* verdicts[] = {"off",     "smooth",    "scan", "intersecting",
-                                             "meeting", "staircase", "part"};
-  nlohmann::json j = nlohmann::json::array();
-  for (const FeatureReport& f : all)
-    j.push_back({{"name", f.name},
-                 {"verdict", verdicts[static_cast<std::size_t>(f.found.verdict)]},
-                 {"patches", f.found.count},
-                 {"dropped_patches", f.found.dropped},
-                 {"loose_ends", {f.found.loose_ends_low, f.found.loose_ends_high}},
-                 {"noisy_share", f.found.noisy_share}});
   return j;
 }
 

@@ -86,6 +86,45 @@ struct PatchOptions {
   /// Patches below this area are merged with the neighbour across the border with the smallest sharp
   /// fraction; square of the surface's unit.
   double min_area = 0;
+  bool list_chains = false;  ///< fill SurfacePatches::chains
+};
+
+/// Successive edges of a surface that turn by more than the feature angle, and what became of them.
+struct CreaseChain {
+  enum class Fate : std::uint8_t {
+    kept,         ///< creases: borders of patches
+    kept_groups,  ///< borders of groups, which are kept even if creases are given up
+    noise,        ///< in or beside a part of the surface whose sharp edges are noise
+    faded,        ///< within a patch: less than half of the border turns by more than the angle
+    small,        ///< at a patch below PatchOptions::min_area, which was merged with its neighbour
+    given_up      ///< all creases of the surface but borders of groups were given up
+  };
+  static constexpr std::size_t fates = 6;
+  Fate fate = Fate::kept;
+  double length = 0;                    ///< unit of the surface
+  double turn = 0;                      ///< mean angle between the normals by length, radians
+  Vec3 middle = Vec3::Zero();           ///< the point half-way along it
+  std::vector<Vec3> line = {};          ///< its points in order, if it is kept
+  std::optional<double> distance = {};  ///< its largest distance from the creases of a mesh, if measured
+
+  bool is_kept() const { return fate == Fate::kept || fate == Fate::kept_groups; }
+};
+
+/// The chains of a surface. They are maximal, but end where other than two sharp edges meet or their fate
+/// changes.
+struct CreaseChains {
+  struct Total {
+    std::size_t count = 0;
+    double length = 0;  ///< unit of the surface
+  };
+  static constexpr std::size_t max_listed = 256;
+  std::vector<CreaseChain> longest;                ///< at most `max_listed`, the longest first
+  std::array<Total, CreaseChain::fates> totals{};  ///< of all chains, by fate
+
+  std::size_t count() const;
+  const Total& total(CreaseChain::Fate fate) const { return totals[static_cast<std::size_t>(fate)]; }
+  /// Sets the fate of chains that are kept, but for borders of groups, to `given_up`.
+  void give_up();
 };
 
 /// A surface cut into smooth parts along its creases.
@@ -112,6 +151,7 @@ struct SurfacePatches {
   double loose_ends_low = 0, loose_ends_high = 0;
   /// Fraction of the area where sharp edges are noise and no creases.
   double noisy_share = 0;
+  CreaseChains chains;  ///< if PatchOptions::list_chains; none if the angle is off
 
   bool any() const { return count > 1; }
 };
@@ -138,11 +178,15 @@ SurfacePatches find_patches(std::span<const Vec3> points, std::span<const Triang
                             const PatchOptions& options, std::span<const std::uint32_t> groups,
                             const std::string& file);
 
+/// The chains that find_patches() lists, for any number of patches. O(n log n).
+CreaseChains find_crease_chains(std::span<const Vec3> points, std::span<const Triangle> triangles,
+                                PatchOptions options, std::span<const std::uint32_t> groups);
+
 /// Cuts the boundary and the interfaces of a tet mesh into patches, each pair of materials as a separate
 /// group. Sets the patches of `mesh.interfaces`, which are computed if they are empty. Patches are numbered
 /// from 0 for each pair, so that a mesh without creases equals one that was not searched. Patches set by
 /// readers (other than 0) stay separate.
-/// \return count and verdict over all pairs
+/// \return count, verdict and chains over all pairs
 SurfacePatches find_mesh_patches(TetMesh& mesh, const FeatureAngle& angle, const std::string& file);
 
 /// Creases and corners of a surface, given its patches.

@@ -109,7 +109,7 @@ struct MesherEstimate {
   std::size_t bytes = 0;  ///< peak memory, including the program and its libraries
 };
 
-/// The patches of a surface.
+/// The patches of a surface, and the curves of its sharp edges.
 struct FeatureReport {
   std::string name;      ///< of the material
   SurfacePatches found;  ///< without the list of the triangles

@@ -96,42 +96,6 @@ TEST(SurfacePatches, AreNotLookedForOnScans) {
   EXPECT_FALSE(patches_of(unit_cube(), off).any());
 }
 
-/// A square plate with flat sides and base, whose upper side is noise.
-TriangleMesh terrain(Index n) {
-  Random random(5);
-  TriangleMesh s;
-  const auto add_grid = [&](const Vec3& origin, const Vec3& u, const Vec3& v, double noise) {
-    const auto first = static_cast<Index>(s.points.size());
-    for (Index i = 0; i <= n; ++i)
-      for (Index j = 0; j <= n; ++j)
-        s.points.emplace_back(origin + (i * u + j * v) / n + Vec3(0, 0, noise * (random.uniform() - 0.5)));
-    for (Index i = 0; i < n; ++i)
-      for (Index j = 0; j < n; ++j) {
-        const Index a = first + i * (n + 1) + j, b = a + n + 1;
-        s.triangles.push_back({a, b, b + 1});
-        s.triangles.push_back({a, b + 1, a + 1});
-      }
-  };
-  add_grid(Vec3(0, 0, 1), Vec3::UnitX(), Vec3::UnitY(), 0.4 / n);
-  // The walls hang from the points of the rim.
-  std::vector<Index> rim;
-  for (Index i = 0; i < n; ++i) rim.push_back(i * (n + 1));
-  for (Index j = 0; j < n; ++j) rim.push_back(n * (n + 1) + j);
-  for (Index i = n; i > 0; --i) rim.push_back(i * (n + 1) + n);
-  for (Index j = n; j > 0; --j) rim.push_back(j);
-  const auto first = static_cast<Index>(s.points.size()), count = static_cast<Index>(rim.size());
-  for (const Index p : rim) s.points.emplace_back(s.points[p].x(), s.points[p].y(), 0);
-  for (Index k = 0; k < count; ++k) {
-    const Index a = rim[k], b = rim[(k + 1) % count], c = first + k, d = first + (k + 1) % count;
-    s.triangles.push_back({a, c, d});
-    s.triangles.push_back({a, d, b});
-  }
-  const auto middle = static_cast<Index>(s.points.size());
-  s.points.emplace_back(0.5, 0.5, 0);
-  for (Index k = 0; k < count; ++k) s.triangles.push_back({first + (k + 1) % count, first + k, middle});
-  return s;
-}
-
 TEST(SurfacePatches, OfANoisySurfaceAreItsFlatParts) {
   const TriangleMesh s = terrain(24);
   const SurfacePatches found = patches_of(s);
@@ -166,26 +130,8 @@ TEST(SurfacePatches, CountNoLooseEndsAtOpenBorders) {
 }
 
 TEST(SurfacePatches, LeaveOutCreasesThatFadeOut) {
-  // Two halves of a strip that turn by 45 degrees along their common edge up to `sharp`, then gradually less,
-  // down to 20.
-  constexpr Index n = 32;
-  const auto strip = [&](Index sharp) {
-    TriangleMesh s;
-    for (Index y = 0; y <= n; ++y) {
-      const double angle = y <= sharp ? 45 : std::max(20.0, 45 - 3.0 * (y - sharp));
-      for (Index x = 0; x <= 2; ++x)
-        s.points.emplace_back(x, y, x < 2 ? 0 : std::tan(angle * std::numbers::pi / 180));
-    }
-    for (Index y = 0; y < n; ++y)
-      for (Index x = 0; x < 2; ++x) {
-        const Index a = 3 * y + x;
-        s.triangles.push_back({a, a + 1, a + 4});
-        s.triangles.push_back({a, a + 4, a + 3});
-      }
-    return s;
-  };
-  EXPECT_EQ(patches_of(strip(8), degrees(35)).count, 1U);
-  EXPECT_EQ(patches_of(strip(20), degrees(35)).count, 2U);
+  EXPECT_EQ(patches_of(folded_strip(8), degrees(35)).count, 1U);
+  EXPECT_EQ(patches_of(folded_strip(20), degrees(35)).count, 2U);
 }
 
 TEST(SurfacePatches, DoNotHangTogetherAcrossFlatTriangles) {

@@ -4,6 +4,8 @@
 // written.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -12,7 +14,9 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validator.hpp>
 
+#include "tests/common/features/parts.h"
 #include "tests/tools/program.h"
+#include "tetwright/io.h"
 
 namespace tetwright::stats_json_test {
 namespace {
@@ -113,6 +117,74 @@ TEST(CheckJson, PlacesAreCoordinates) {
   EXPECT_EQ(places["inverted"]["at"], nlohmann::json({0.75, 0.75, -0.75}));
   EXPECT_EQ(places["unused_points"]["points"], nlohmann::json({5}));
   EXPECT_EQ(places["unused_points"]["at"], nlohmann::json({9.0, 9.0, 9.0}));
+}
+
+TEST(StatsJson, SayWhatBecameOfEachCurve) {
+  const TemporaryFolder f;
+  std::string said;
+  /// Number of curves of the first surface by fate, "longest" and "further" ones.
+  const auto fates = [&](const std::string& arguments) {
+    const Answer a = run("mesh " + arguments + " -o " + (f / "o.vtu") + " --stats " + (f / "s.json"));
+    EXPECT_LE(a.status, 1) << a.err;
+    said = a.out;
+    const auto j = nlohmann::json::parse(contents(f / "s.json"));
+    EXPECT_EQ(violations(j), "") << arguments;
+    const auto& feature = j["features"][0];
+    std::map<std::string, int> found;
+    double length = std::numeric_limits<double>::infinity();
+    for (const auto& curve : feature["curves"]) {
+      ++found[curve["fate"]];
+      EXPECT_LE(curve["length"], length);
+      length = curve["length"];
+      EXPECT_GT(curve["turn"], 34.9);
+      if (curve["fate"] == "kept" && feature["verdict"] == "part")
+        EXPECT_LT(curve["distance"], 0.5) << curve;
+      else
+        EXPECT_FALSE(curve.contains("distance")) << curve;
+    }
+    found["further"] = feature["further_curves"];
+    return found;
+  };
+  using Fates = std::map<std::string, int>;
+  write_surface(folded_block(8), f / "block.off");
+  EXPECT_EQ(fates((f / "block.off") + " --resolution 48"),
+            (Fates{{"kept", 13}, {"faded", 1}, {"further", 0}}));
+  EXPECT_NE(said.find("curves of 'block' that are not kept: 1 of length 11"), std::string::npos) << said;
+  EXPECT_EQ(fates((f / "block.off") + " --resolution 16 --feature-angle off"), (Fates{{"further", 0}}));
+
+  // Two cubes that cross, one of them with a hole around an edge, which cannot be closed flat.
+  TriangleMesh open = unit_cube();
+  std::erase_if(open.triangles, [&](const Triangle& t) {
+    return std::count_if(t.begin(), t.end(),
+                         [&](Index p) { return open.points[p].x() == 1 && open.points[p].z() == 1; }) == 2;
+  });
+  TriangleMesh both = unit_cube();
+  for (Vec3& p : both.points) p += Vec3(0.3, 0.4, -0.2);
+  for (Triangle t : open.triangles) {
+    for (Index& p : t) p += static_cast<Index>(both.points.size());
+    both.triangles.push_back(t);
+  }
+  both.points.insert(both.points.end(), open.points.begin(), open.points.end());
+  write_surface(both, f / "both.off");
+  EXPECT_EQ(fates((f / "both.off") + " --resolution 16"), (Fates{{"given_up", 21}, {"further", 0}}));
+  EXPECT_NE(said.find("curves of 'both' that are not kept: 21 of length 23 given up"), std::string::npos)
+      << said;
+
+  // A surface that touches the open one is not joined with it.
+  write_surface(open, f / "open.off");
+  TriangleMesh beside = unit_cube();
+  for (Vec3& p : beside.points) p.x() += 1;
+  write_surface(beside, f / "beside.off");
+  EXPECT_EQ(fates((f / "beside.off") + " --material o=" + (f / "open.off") + " --resolution 16"),
+            (Fates{{"given_up", 12}, {"further", 0}}));
+
+  write_surface(terrain(24), f / "terrain.off");
+  const Fates of_terrain = fates((f / "terrain.off") + " --resolution 24");
+  EXPECT_GT(of_terrain.at("noise"), 20);
+  EXPECT_GE(of_terrain.at("kept"), 12);
+  EXPECT_NE(said.find("; on 1"), std::string::npos) << said;
+  EXPECT_NE(said.find(" % of the area edges look like those of a scan"), std::string::npos) << said;
+  EXPECT_EQ(said.find("not kept"), std::string::npos) << said;
 }
 
 TEST(StatsJson, OfARunThatFails) {

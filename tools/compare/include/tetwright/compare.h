@@ -124,6 +124,12 @@ CreaseComparison compare_creases(const CreaseCurves& expected, const std::vector
 /// \pre `mesh` has its interfaces with their patches.
 CreaseComparison compare_creases(const CreaseCurves& expected, const TetMesh& mesh);
 
+/// Sets the distances of chains that are kept from the creases and junctions of a mesh, at samples 1/2,000 of
+/// the diagonal apart. Leaves them unset if the mesh has neither.
+///
+/// \pre `mesh` has its interfaces with their patches.
+void measure_chains(std::vector<FeatureReport>& features, const TetMesh& mesh);
+
 /// A named or numbered patch, in the input and in the result.
 struct PatchComparison {
   SurfaceRegion group;

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "common/features/inner_edges.h"
+#include "tetwright/surface_mesh.h"
+
+namespace tetwright {
+
+/// An edge that turns by more than the feature angle.
+struct SharpEdge {
+  std::array<Index, 2> ends;
+  double length;  ///< unit of the surface
+  double turn;    ///< angle between the normals, radians
+  CreaseChain::Fate fate;
+};
+
+/// Edges with two consistently oriented triangles of different groups.
+/// \param uses edge_uses() of the triangles
+std::vector<InnerEdge> edges_between_groups(std::span<const Vec3> points, std::span<const Triangle> triangles,
+                                            const std::vector<EdgeUse>& uses);
+
+/// Joins sharp edges to chains. O(points + edges); the result depends on the order of the edges only.
+CreaseChains chains_of(std::span<const Vec3> points, const std::vector<SharpEdge>& edges);
+
+}  // namespace tetwright
