@@ -350,8 +350,10 @@ class StripCollapse {
   }
 
   /// The candidate with the best shapes; if none has tets of positive volume, what is found from there, and
-  /// then, if points make room, what is found while the points around move, too.
-  std::optional<Vec3> best_position(Index u, Index v) {
+  /// then, if points make room, what is found while the points around move, too. These are moved only if a
+  /// position is found.
+  /// \param before receives the previous positions of points that moved
+  std::optional<Vec3> best_position(Index u, Index v, std::map<Index, Vec3>& before) {
     double best = -HUGE_VAL;
     Vec3 position = at(u);
     for (const Vec3& p : candidates(u, v))
@@ -363,8 +365,7 @@ class StripCollapse {
     if (!makes_room_) return {};
 
     const std::set<Index> around = points_around(u, v);
-    std::map<Index, Vec3> before;
-    for (const Index q : around) before[q] = at(q);
+    for (const Index q : around) before.try_emplace(q, at(q));
     for (int sweep = 0; sweep < Strips::max_sweeps && best <= Strips::min_solid_angle; ++sweep) {
       for (const Index q : around) {
         Vec3 moved = at(q);
@@ -382,22 +383,30 @@ class StripCollapse {
     bool valid = best > Strips::min_solid_angle;
     for (const Index q : around) valid &= worst_shape_at(q, u, v, position) > 0;
     if (valid) return position;
-    for (const auto& [q, p] : before) mesh_.points[q] = p;
+    restore(before);
     return {};
+  }
+
+  void restore(std::map<Index, Vec3>& before) {
+    for (const auto& [q, p] : before) mesh_.points[q] = p;
+    before.clear();
   }
 
   bool collapse(Index u, Index v) {
     if (u == v) return false;
     std::optional<std::set<Index>> others = in_the_way(u, v);
     if (!others) return false;
-    std::optional<Vec3> position = best_position(u, v);
+    std::map<Index, Vec3> before;
+    std::optional<Vec3> position = best_position(u, v, before);
     if (!position) return false;
     if (!others->empty()) {
+      // Points that moved are valid only if the edge is collapsed.
+      restore(before);
       if (others->size() > Strips::max_splits || others->contains(beyond_)) return false;
       for (const Index p : *others) part_from(p, u, v);
       others = in_the_way(u, v);
       if (!others || !others->empty()) return false;
-      position = best_position(u, v);
+      position = best_position(u, v, before);
       if (!position) return false;
     }
     std::vector<Index>& kept = at_[u];
