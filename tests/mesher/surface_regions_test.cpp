@@ -211,7 +211,7 @@ TEST(SurfaceRegions, OfSurfacesThatMeetAreKept) {
   EXPECT_EQ(dense.report.features[0].found.verdict, SurfacePatches::Verdict::part);
   std::set<std::string> names;
   for (const auto& [patch, group] : dense.mesh.patch_groups) names.insert(group.name);
-  EXPECT_EQ(names, (std::set<std::string>{"a1", "a2", "b1", "b2"}));
+  EXPECT_EQ(names, (std::set<std::string>{"a1", "a2", "a2+b1", "b2"}));
   EXPECT_TRUE(dense.reference->has_patches());
   EXPECT_TRUE(dense.reference->has_junctions());
 }
