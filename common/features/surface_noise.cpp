@@ -142,17 +142,16 @@ std::vector<std::uint8_t> find_noisy_parts(std::span<const Vec3> points, std::sp
       noisy[p] = 1;
       queue.push_back(p);
     }
+  // More noise only adds to a part's noisy border, so the order of the queue does not matter.
+  std::vector<double> length(part_count, 0), beside_noise(part_count, 0);
+  for (Index p = 0; p < part_count; ++p)
+    for (const auto& [other, shared] : borders[p]) length[p] += shared;
   while (!queue.empty()) {
     const Index beside = queue.back();
     queue.pop_back();
-    for (const auto& [p, unused] : borders[beside]) {
-      if (noisy[p] || counts[p]) continue;
-      double length = 0, beside_noise = 0;
-      for (const auto& [other, shared] : borders[p]) {
-        length += shared;
-        if (noisy[other]) beside_noise += shared;
-      }
-      if (beside_noise < min_noisy_border * length) continue;
+    for (const auto& [p, shared] : borders[beside]) {
+      beside_noise[p] += shared;
+      if (noisy[p] || counts[p] || beside_noise[p] < min_noisy_border * length[p]) continue;
       noisy[p] = 1;
       queue.push_back(p);
     }
@@ -163,15 +162,15 @@ std::vector<std::uint8_t> find_noisy_parts(std::span<const Vec3> points, std::sp
   for (Index p = 0; p < part_count; ++p)
     for (const auto& [other, unused] : borders[p])
       if (!noisy[p] && !noisy[other]) clusters.unite(p, other);
-  std::vector<std::uint8_t> has_one(part_count, 0), beside_noise(part_count, 0);
+  std::vector<std::uint8_t> has_one(part_count, 0), is_beside(part_count, 0);
   for (Index p = 0; p < part_count; ++p) {
     if (noisy[p]) continue;
     if (counts[p]) has_one[clusters.root(p)] = 1;
     for (const auto& [other, unused] : borders[p])
-      if (noisy[other]) beside_noise[clusters.root(p)] = 1;
+      if (noisy[other]) is_beside[clusters.root(p)] = 1;
   }
   for (Index p = 0; p < part_count; ++p)
-    if (!noisy[p] && beside_noise[clusters.root(p)] && !has_one[clusters.root(p)]) noisy[p] = 1;
+    if (!noisy[p] && is_beside[clusters.root(p)] && !has_one[clusters.root(p)]) noisy[p] = 1;
   return noisy;
 }
 

@@ -54,12 +54,14 @@ SheetBranches::SheetBranches(const LabelledComplex& complex, const GridFrame& vo
               0,
               {}};
     const Vec3 along = (edge.ends[1] - edge.ends[0]).normalized();
+    bool has_angles = along.squaredNorm() > 0;
     for (std::size_t k = i; k < j; ++k) {
       const Triangle& ids = triangles[uses[k].triangle];
       const Index apex =
           *std::find_if(ids.begin(), ids.end(), [&](Index p) { return p != ends[0] && p != ends[1]; });
       Vec3 inwards = voxels.to_grid(complex.points[apex]) - edge.ends[0];
       inwards -= inwards.dot(along) * along;
+      has_angles &= inwards.squaredNorm() > 0;
       if (k == i) {
         edge.u = inwards.normalized();
         edge.v = along.cross(edge.u);
@@ -68,7 +70,7 @@ SheetBranches::SheetBranches(const LabelledComplex& complex, const GridFrame& vo
       edge.halves.push_back({complex.sheets[uses[k].triangle].component,
                              turn_of(inwards.dot(edge.u), inwards.dot(edge.v)), uses[k].ascending});
     }
-    if (!edge.u.allFinite() || !edge.v.allFinite()) continue;
+    if (!has_angles) continue;
     std::stable_sort(edge.halves.begin(), edge.halves.end(),
                      [](const Half& a, const Half& b) { return a.angle < b.angle; });
     edge.curve =
@@ -172,7 +174,8 @@ void SheetBranches::hide(const Vec3& point, double reach, std::vector<NearSheet>
     };
     for (const std::size_t i : sectors(edge, side)) {
       const Half &low = edge.halves[i], &high = edge.halves[(i + 1) % edge.halves.size()];
-      const double end = high.angle > low.angle ? high.angle : high.angle + 4;
+      const bool wraps = i + 1 == edge.halves.size();
+      const double end = wraps ? high.angle + 4 : high.angle;
       const bool inside = (own >= low.angle && own <= end) || (own + 4 >= low.angle && own + 4 <= end);
       const double off = inside ? 0 : std::min(turn_between(own, low.angle), turn_between(own, high.angle));
       if (off < best) best = off, sector = i;

@@ -44,9 +44,9 @@ class FeatureSurface : public ReferenceSurface {
   /// \param corner_reach as for find_creases()
   /// \param field answers queries for faces without patches
   /// \param of_sheets patches of the inner sheets of the input's complex, if it has any
-  /// \param caps of each body's holes, input units; each triangle continues the patch of the nearest one of
-  /// the
-  ///   body. Empty: none.
+  /// \param caps of each body's holes, input units, or empty; each triangle continues the patch of the
+  /// nearest
+  ///   triangle of the body
   FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach,
                  std::shared_ptr<const MaterialField> field, const SheetPatches& of_sheets = {},
                  const std::vector<TriangleMesh>& caps = {});

@@ -86,8 +86,9 @@ class StripCollapse {
 
   const Vec3& at(Index p) const { return mesh_.points[p]; }
   bool is_real(const Tet& t) const { return t[3] != beyond_; }
+  /// The part or material of a tet; nothing outside, also where the outside is meshed.
   MaterialOrOutside label(Index t) const {
-    if (!is_real(tets_[t])) return {};
+    if (!is_real(tets_[t]) || material_of_[t] == outside_tag) return {};
     return parts_ ? MaterialTag{part_of_[t]} : material_of_[t];
   }
   static bool has(const Tet& t, Index p) { return std::find(t.begin(), t.end(), p) != t.end(); }
@@ -237,15 +238,23 @@ class StripCollapse {
   }
 
   /// Splits the longer of the edges from a point to two others, so that it is no longer joined to both.
-  void part_from(Index p, Index u, Index v) {
-    if (p == beyond_) return;
+  /// \return false if a tet would not be positive
+  bool part_from(Index p, Index u, Index v) {
     const Index end = (at(u) - at(p)).squaredNorm() >= (at(v) - at(p)).squaredNorm() ? u : v;
+    const Vec3 position = (at(end) + at(p)) / 2;
+    std::vector<Index> around = at_.at(end);
+    std::erase_if(around, [&](Index t) { return removed_[t] || !has(tets_[t], p); });
+    for (const Index t : around)
+      for (const Index replaced : {p, end}) {
+        std::array<Vec3, 4> c;
+        for (std::size_t k = 0; is_real(tets_[t]) && k < 4; ++k)
+          c[k] = tets_[t][k] == replaced ? position : at(tets_[t][k]);
+        if (is_real(tets_[t]) && !(orient3d(c[0], c[1], c[2], c[3]) > 0)) return false;
+      }
     const auto middle = static_cast<Index>(mesh_.points.size());
-    mesh_.points.emplace_back((at(end) + at(p)) / 2);
+    mesh_.points.push_back(position);
     std::vector<Index>& own = at_[middle];
-    const std::vector<Index> around = at_.at(end);
     for (const Index t : around) {
-      if (removed_[t] || !has(tets_[t], p)) continue;
       const auto added = static_cast<Index>(tets_.size());
       tets_.push_back(tets_[t]);
       material_of_.push_back(material_of_[t]);
@@ -263,6 +272,7 @@ class StripCollapse {
     split_ = true;
     Regions& regions = regions_[middle];
     for (const Index t : own) regions.insert(label(t));
+    return true;
   }
 
   /// The worst shape of the tets that stay if both points move to a position: the smallest solid angle, or
@@ -370,6 +380,7 @@ class StripCollapse {
       for (const Index q : around) {
         Vec3 moved = at(q);
         const auto shape_at = [&](const Vec3& p) {
+          if ((p - before.at(q)).norm() > Strips::max_room * cell_) return -HUGE_VAL;
           mesh_.points[q] = p;
           return worst_shape_at(q, u, v, position);
         };
@@ -381,7 +392,7 @@ class StripCollapse {
       if (is_free) search(position, best, shape);
     }
     bool valid = best > Strips::min_solid_angle;
-    for (const Index q : around) valid &= worst_shape_at(q, u, v, position) > 0;
+    for (const Index q : around) valid &= worst_shape_at(q, u, v, position) > Strips::min_solid_angle;
     if (valid) return position;
     restore(before);
     return {};
@@ -403,7 +414,8 @@ class StripCollapse {
       // Points that moved are valid only if the edge is collapsed.
       restore(before);
       if (others->size() > Strips::max_splits || others->contains(beyond_)) return false;
-      for (const Index p : *others) part_from(p, u, v);
+      for (const Index p : *others)
+        if (!part_from(p, u, v)) return false;
       others = in_the_way(u, v);
       if (!others || !others->empty()) return false;
       position = best_position(u, v, before);
@@ -476,12 +488,9 @@ void collapse_strips(TetMesh& mesh, const LabelledComplex& complex, const Featur
   const ProjectionTree curves = branching_curves(complex);
   if (curves.empty()) return;
   using Effort = StripCollapse::Effort;
-  Effort effort = Effort::across;
-  for (int round = 0; round < Strips::max_rounds; ++round) {
-    if (StripCollapse(mesh, surface, curves, cell, parts).run(effort)) continue;
-    if (effort == Effort::make_room) return;
-    effort = effort == Effort::across ? Effort::all : Effort::make_room;
-  }
+  for (const Effort effort : {Effort::across, Effort::all, Effort::make_room})
+    for (int round = 0; round < Strips::max_rounds; ++round)
+      if (!StripCollapse(mesh, surface, curves, cell, parts).run(effort)) break;
 }
 
 }  // namespace tetwright

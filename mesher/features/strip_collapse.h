@@ -10,8 +10,10 @@ namespace tetwright {
 
 /// Removes the strips of faces that a lattice leaves along curves in which four or more sheets meet: a cut
 /// cell there joins two regions that only face each other across the curve. Edges across a strip are
-/// collapsed onto the curve, as far as the mesh stays a mesh (link condition, Dey et al. 1999) and tets keep
-/// a shape. What cannot be collapsed stays. `mesh.interfaces` are found anew.
+/// collapsed, then all edges of its faces, then while inner points around them move by up to a cell; as far
+/// as the mesh stays a mesh (link condition, Dey et al. 1999: a few edges in the way are split) and tets keep
+/// a shape. What cannot be collapsed stays. Points end up near the curve; fit_creases() moves them onto it.
+/// `mesh.interfaces` are found anew. Serial.
 /// \param cell size of the cells at the surface, input units
 /// \param parts null, or those of the mesh: strips between parts of a region are collapsed, too
 /// \pre the interfaces of the mesh have no patches yet, and those of sheets are not among them

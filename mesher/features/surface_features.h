@@ -17,14 +17,14 @@ struct SurfaceFeatures {
 
 /// Finds the patches of bodies and sheets.
 /// \param cell edge of a finest cell, input units; patches that are small for it are merged with neighbours
-/// 	hrows InputError for more than 65,534 patches
+/// \throws InputError for more than 65,534 patches
 SurfaceFeatures find_features(const MesherInput& input, const MesherOptions& options, double cell);
 
 /// True if there are creases, junctions or named groups to fit.
 bool has_features(const MesherInput& input, const SurfaceFeatures& features);
 
-/// False if creases were given up because surfaces meet without being joined: the borders of groups are then
-/// accurate to a cell only, like the curves in which the surfaces meet.
+/// False if the creases of a surface with groups were given up, because it meets another without being joined
+/// or gaps of it are closed: the borders of its groups are then accurate to a cell only.
 bool are_exact(const SurfaceFeatures& features);
 
 /// Gives up creases that the finished mesh cannot have, and reports the others in `dense.report`: `features`,

@@ -26,10 +26,12 @@ class BodyBuilder {
       : input_(input), tags_(std::move(tags)), contact_(contact), caps_(caps), progress_(progress) {}
 
   /// Closes flat holes, repairs the surfaces one by one and appends each as a body, followed by its nested
-  /// components; or each of its cells, if inner walls divide it. \param partitions further walls between
-  /// cells \param names of patches in use; those of the surfaces' groups are added \throws InputError as
-  /// repair_surface() does; for a partition that divides nothing \throws UsageError for a contact tolerance
-  /// that is not above 0; as name_holes() does \throws Interrupted
+  /// components; or each of its cells, if inner walls divide it.
+  /// \param partitions further walls between cells
+  /// \param names of patches in use; those of the surfaces' groups are added
+  /// \throws InputError as repair_surface() does, and for a partition that divides nothing
+  /// \throws UsageError for a contact tolerance that is not above 0, and as name_holes() does
+  /// \throws Interrupted
   void add(std::vector<MaterialSurface> surfaces, NestedRule nested, RegionRule rule,
            const std::vector<Partition>& partitions = {}, std::set<std::string> names = {});
 

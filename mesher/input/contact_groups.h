@@ -22,8 +22,7 @@ class FaceGroups {
   explicit FaceGroups(const MesherInput& input);
 
   /// \return the group made by name_contact_groups() if there is one, otherwise that of the last body with a
-  /// group
-  ///   there, or none
+  ///   group there, or none
   SurfaceRegion of(Index face) const;
 
  private:

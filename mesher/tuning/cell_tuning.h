@@ -108,7 +108,6 @@ struct CellTuning {
     static constexpr double max_closed_share = 0.01;
   };
 
-  /// Resolution of surfaces and their patches.
   /// Faces that close holes.
   struct Caps {
     static constexpr double min_area = 8;  ///< squared cells: smaller holes have hardly any faces
@@ -122,6 +121,7 @@ struct CellTuning {
     static constexpr double min_facing = 0.5;
   };
 
+  /// Resolution of surfaces and their patches.
   struct Patches {
     /// A surface whose points are all within this distance of a plane, in diagonals, encloses nothing in
     /// cells of any size.

@@ -129,6 +129,8 @@ struct CutTuning {
     /// Steps of the search for a position, cells: from about the width of a strip to below what changes
     /// shapes.
     static constexpr double first_step = 0.5, last_step = 0.01;
+    /// Max distance by which points make room, cells: farther away they would get other labels.
+    static constexpr double max_room = 1;
     /// Max sweeps over the points that make room: later ones gain little.
     static constexpr int max_sweeps = 6;
     /// Max edges that are split so that an edge may be collapsed: mostly it is one.
