@@ -150,6 +150,13 @@ void CreaseCurves::add(const SurfaceCreases& creases, std::span<const Vec3> surf
   for (const Index c : creases.corners) corners.push_back(surface_points[c]);
 }
 
+void CreaseCurves::add(const CreaseCurves& other) {
+  const auto first = static_cast<Index>(points.size());
+  points.insert(points.end(), other.points.begin(), other.points.end());
+  for (const auto& [a, b] : other.segments) segments.push_back({first + a, first + b});
+  corners.insert(corners.end(), other.corners.begin(), other.corners.end());
+}
+
 namespace {
 
 /// Faces of each pair of materials, with their patches.

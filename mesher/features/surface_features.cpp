@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "common/features/edge_uses.h"
 #include "common/geometry/projection_tree.h"
 #include "mesher/tuning/cell_tuning.h"
 #include "mesher/tuning/complex_tuning.h"
@@ -129,18 +130,57 @@ void give_up_where_gaps_are_closed(const MesherInput& input, const MesherReport&
   }
 }
 
+/// The edges with one triangle, around holes that are not flat.
+ProjectionTree open_rims(const RepairedSurface& surface) {
+  std::vector<ProjectionTree::Item> segments;
+  const std::vector<EdgeUse> uses = edge_uses(surface.triangles, {});
+  for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
+    while (j < uses.size() && uses[j].key == uses[i].key) ++j;
+    const auto [a, b] = ends_of(uses[i].key);
+    if (j - i == 1) segments.push_back({{a, b, b}, {}});
+  }
+  return {surface.points, std::move(segments)};
+}
+
+/// Leaves out what is nearer to open rims than `reach`, where the mesh rounds into the cap of a hole.
+CreaseCurves away_from_rims(const CreaseCurves& creases, const ProjectionTree& rims, double reach) {
+  CreaseCurves kept;
+  const auto is_near = [&](const Vec3& p) { return rims.any_within(p, reach); };
+  for (const auto& [a, b] : creases.segments) {
+    const Vec3 &from = creases.points[a], &to = creases.points[b];
+    // Long segments lose only their ends.
+    const int pieces = std::max(1, static_cast<int>(std::ceil((to - from).norm() / reach)));
+    for (int k = 0; k < pieces; ++k) {
+      const Vec3 p = from + (to - from) * k / pieces, q = from + (to - from) * (k + 1) / pieces;
+      if (is_near(p) || is_near(q)) continue;
+      const auto first = static_cast<Index>(kept.points.size());
+      kept.points.insert(kept.points.end(), {p, q});
+      kept.segments.push_back({first, first + 1});
+    }
+  }
+  std::copy_if(creases.corners.begin(), creases.corners.end(), std::back_inserter(kept.corners),
+               [&](const Vec3& p) { return !is_near(p); });
+  return kept;
+}
+
 /// Reports patches and creases. Omits the creases of surfaces that meet others or themselves, as they may lie
-/// inside the solid.
+/// inside the solid, and those at open rims.
 void report_features(const MesherInput& input, const std::vector<SurfacePatches>& patches,
                      MesherReport& report) {
   for (std::size_t b = 0; b < patches.size(); ++b) {
     const RepairedSurface& surface = input.bodies[b].surface;
     const bool exact = patches[b].verdict != SurfacePatches::Verdict::meeting &&
                        patches[b].verdict != SurfacePatches::Verdict::intersecting;
-    if (patches[b].any() && exact && !input.complex)
-      report.creases.add(find_creases(surface.points, surface.triangles, patches[b].patches,
-                                      CellTuning::Patches::corner_reach * report.cell_size, patches[b].rough),
-                         surface.points);
+    if (patches[b].any() && exact && !input.complex) {
+      CreaseCurves creases;
+      creases.add(find_creases(surface.points, surface.triangles, patches[b].patches,
+                               CellTuning::Patches::corner_reach * report.cell_size, patches[b].rough),
+                  surface.points);
+      if (surface.closed < surface.triangles.size())
+        creases =
+            away_from_rims(creases, open_rims(surface), CellTuning::Patches::rim_reach * report.cell_size);
+      report.creases.add(creases);
+    }
     report.features.push_back({input.bodies[b].name, patches[b]});
     report.features.back().found.patches = {};
     report.features.back().found.rough = {};

@@ -131,6 +131,9 @@ struct CellTuning {
     /// Distance, cells, from a curve where three regions meet within which creases are not reported, and max
     /// distance of a reported crease from a visible surface: such curves are accurate to half a cell only.
     static constexpr double junction_reach = 1.5;
+    /// Distance, cells, from open rims within which creases are not reported: caps round them as far as cells
+    /// are cut.
+    static constexpr double rim_reach = 3;
   };
 };
 

@@ -218,6 +218,7 @@ struct CreaseCurves {
   std::vector<Vec3> corners;
 
   void add(const SurfaceCreases& creases, std::span<const Vec3> surface_points);
+  void add(const CreaseCurves& other);
 };
 
 /// Creases of the boundary and the interfaces of a mesh, between the patches of each pair of materials.

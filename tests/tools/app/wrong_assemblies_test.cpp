@@ -4,6 +4,7 @@
 // says what to do.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 #include <string>
 #include <vector>
@@ -79,6 +80,13 @@ TEST(WrongAssemblies, OpenBody) {
   Assembly a;
   TriangleMesh open = make_box({1, 0, 0}, {2, 1, 1});
   open.triangles.erase(open.triangles.begin());
+  a.put_surface("flat.off", open);
+  a.expect_note("--material bad=%flat.off", {"3 boundary edges of flat holes"});
+  // Without the triangles at a corner the rim is not flat.
+  const Vec3 corner(2, 1, 1);
+  std::erase_if(open.triangles, [&](const Triangle& t) {
+    return std::any_of(t.begin(), t.end(), [&](Index p) { return open.points[p] == corner; });
+  });
   a.put_surface("bad.off", open);
   a.expect_note("--material bad=%bad.off", {"boundary edges of holes", "not joined", "surface is open"});
 }
