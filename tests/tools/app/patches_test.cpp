@@ -312,9 +312,9 @@ TEST(Patches, OfTheHeaterNameEachContactAfterBothParts) {
   EXPECT_EQ(mesh.material_names.size(), 5U);
   const auto stats = nlohmann::json::parse(contents(f / "s.json"));
   for (const nlohmann::json& patch : stats.at("patches")) {
-    EXPECT_NEAR(patch.at("area").get<double>(), patch.at("input_area").get<double>(), 1e-3) << patch;
+    EXPECT_NEAR(patch.at("area").get<double>(), patch.at("input_area").get<double>(), 1e-5) << patch;
     if (const auto contact = contacts.find(patch.at("name")); contact != contacts.end()) {
-      EXPECT_NEAR(patch.at("area").get<double>(), contact->second, 1e-3) << patch;
+      EXPECT_NEAR(patch.at("area").get<double>(), contact->second, 1e-5) << patch;
     }
   }
   EXPECT_EQ(stats.at("creases").at("lost_corners"), 0) << stats.at("creases");
