@@ -38,9 +38,11 @@ class Fitter {
     if (surface_.has_junctions()) floors.insert(floors.end(), Fitting::junction_passes, last);
     for (const double floor : floors) {
       if (!move(floor)) return;
+      if (surface_.has_junctions()) move_one_by_one(floor);
       make_room(remaining_moves(floor));
     }
     move(last);
+    if (surface_.has_junctions()) move_one_by_one(last);
   }
 
  private:
@@ -135,6 +137,37 @@ class Fitter {
       displace_with_backtracking(mesh_.points, mesh_.tets, moves,
                                  floor * CutTuning::Shapes::tangent_of_bad_tet);
     return !moves.empty();
+  }
+
+  /// Moves points on their own. In simultaneous moves one point that cannot arrive holds back all those that
+  /// share tets with it, and their neighbours in turn.
+  void move_one_by_one(double floor) {
+    const std::vector<PointMove> moves = remaining_moves(floor);
+    if (moves.empty()) return;
+    std::vector<Index> number(mesh_.points.size(), no_index);
+    for (std::size_t m = 0; m < moves.size(); ++m) number[moves[m].point] = static_cast<Index>(m);
+    std::vector<std::vector<Index>> stars(moves.size());
+    for (Index t = 0; t < mesh_.tets.size(); ++t)
+      for (const Index p : mesh_.tets[t])
+        if (number[p] != no_index) stars[number[p]].push_back(t);
+    const double min_tangent = floor * CutTuning::Shapes::tangent_of_bad_tet;
+    std::vector<double> before;
+    for (std::size_t m = 0; m < moves.size(); ++m) {
+      Vec3& at = mesh_.points[moves[m].point];
+      before.clear();
+      for (const Index t : stars[m]) before.push_back(tangent_of(mesh_.tets[t]));
+      const auto is_valid = [&] {
+        for (std::size_t i = 0; i < stars[m].size(); ++i)
+          if (tangent_of(mesh_.tets[stars[m][i]]) < std::min(min_tangent, before[i])) return false;
+        return true;
+      };
+      at = moves[m].from + moves[m].step;
+      for (int halvings = 1; !is_valid(); ++halvings) {
+        const bool gives_up = halvings > Fitting::max_own_halvings;
+        at = moves[m].from + (gives_up ? 0 : std::ldexp(1, -halvings)) * moves[m].step;
+        if (gives_up) break;
+      }
+    }
   }
 
   /// True for vertices of thickened walls in passes that would spoil their tets.

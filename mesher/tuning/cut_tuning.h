@@ -156,6 +156,8 @@ struct CutTuning {
     /// Steps tried to make room, in mean edges at the point, and number of sweeps over all points.
     static constexpr double room_steps[] = {0.4, 0.2, 0.1, 0.05};
     static constexpr int room_sweeps = 2;
+    /// Steps of points that move on their own are halved at most this often.
+    static constexpr int max_own_halvings = 3;
     /// Points within this distance of their target, cells, have arrived: allows for rounding.
     static constexpr double arrived = 1e-12;
   };
