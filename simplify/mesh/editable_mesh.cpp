@@ -2,7 +2,6 @@
 #include "simplify/mesh/editable_mesh.h"
 
 #include <algorithm>
-#include <utility>
 
 #include "common/geometry/box_tree.h"
 #include "common/geometry/predicates.h"
@@ -59,14 +58,6 @@ void EditableMesh::freeze(const std::vector<std::uint8_t>& mask) {
     const Index came_as = original(static_cast<Index>(p));
     if (came_as < mask.size() && mask[came_as] != 0) frozen_[p] |= with_tets;
   }
-}
-
-void EditableMesh::freeze_points(const std::function<bool(const Vec3&)>& chosen) {
-  frozen_.resize(positions_.size(), 0);
-  std::vector<std::uint8_t> asked(positions_.size(), 0);
-  for (const InterfaceFace& f : interface_faces())
-    for (const Index p : f.ids)
-      if (!std::exchange(asked[p], 1) && chosen(positions_[p])) frozen_[p] |= alone;
 }
 
 void EditableMesh::freeze_interfaces() {

@@ -3,7 +3,6 @@
 
 #include <atomic>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -73,10 +72,6 @@ class EditableMesh {
   /// \param mask by point, in the input's order.
   /// \pre No task runs; before compact().
   void freeze(const std::vector<std::uint8_t>& mask);
-  /// Freezes the points of boundary and interfaces, without their tets, whose positions (working coordinates)
-  /// are chosen.
-  /// \pre No task runs; before compact().
-  void freeze_points(const std::function<bool(const Vec3&)>& chosen);
   /// Freezes all points of boundary and interfaces, and so their faces.
   /// \pre No task runs.
   void freeze_interfaces();

@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "common/tolerances.h"
 #include "simplify/tuning/tuning.h"
 #include "tetwright/resources.h"
 
@@ -26,10 +25,6 @@ Engine::Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, P
   rules.objective.quality = TetQuality::for_target(mesh_.total_volume(), options.target_tets, options.beta);
   rules.objective.shape = options.objective;
   rules.error.gamma = options.gamma;
-  // Kinks of junctions between smooth patches are corners that the mesh alone does not show.
-  if (options.reference && options.reference->has_junctions())
-    mesh_.freeze_points(
-        [&](const Vec3& p) { return projection_.onto_corner(p, tolerance::flat_patch).has_value(); });
   // Patches and sheets must be preserved from the first collapse on. Without them, only improvement needs the
   // projection.
   if (projection_.has_patches() || projection_.has_sheets())
