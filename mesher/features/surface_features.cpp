@@ -10,6 +10,7 @@
 
 #include "common/features/edge_uses.h"
 #include "common/geometry/projection_tree.h"
+#include "mesher/domain/material_field.h"
 #include "mesher/tuning/cell_tuning.h"
 #include "mesher/tuning/complex_tuning.h"
 #include "tetwright/error.h"
