@@ -199,6 +199,7 @@ class SurfaceEstimate {
       before += EstimateTuning::Memory::per_triangle * static_cast<double>(b.surface.closed) +
                 EstimateTuning::Memory::per_open_triangle *
                     static_cast<double>(b.surface.triangles.size() - b.surface.closed);
+    before = std::max(before, input_.joined_bytes);
     return options_.uniform ? uniform(before) : adaptive(before);
   }
 

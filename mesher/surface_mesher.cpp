@@ -286,10 +286,11 @@ class SurfaceMeshing {
   void fit_features(DenseMesh& dense, SheetParts* parts) {
     stages_.begin("creases");
     const double cell = dense.report.cell_size;
-    const auto features = std::make_shared<const FeatureSurface>(input_, features_.bodies,
-                                                                 CellTuning::Patches::corner_reach * cell,
-                                                                 dense.field, features_.sheets, bodies_.caps);
-    if (input_.complex) collapse_strips(dense.mesh, *input_.complex, *features, cell, parts);
+    const auto features = std::make_shared<const FeatureSurface>(
+        input_, features_.bodies, CellTuning::Patches::corner_reach * cell, dense.field,
+        features_.complex ? &*features_.complex : nullptr, bodies_.caps);
+    if (input_.complex)
+      collapse_strips(dense.mesh, *input_.complex, *features, cell, parts, stages_.progress());
     if (parts) {
       const std::vector<InterfaceTriangle> sheets = sheet_faces(dense.mesh, *parts);
       dense.mesh.interfaces.insert(dense.mesh.interfaces.end(), sheets.begin(), sheets.end());

@@ -9,6 +9,7 @@
 #include "common/geometry/box_tree.h"
 #include "common/geometry/ray_crossing.h"
 #include "common/mesh/disjoint_sets.h"
+#include "mesher/complex/imprint_state.h"
 #include "mesher/complex/surface_cells.h"
 #include "mesher/tuning/complex_tuning.h"
 #include "tetwright/resources.h"
@@ -35,26 +36,35 @@ struct Use {
 class ComplexBuilder {
  public:
   ComplexBuilder(const ImprintedSurfaces& imprinted, const SurfaceSoup& soup, std::size_t bodies,
-                 double tolerance, OverlapRule rule, const SoupSheets& sheets)
+                 double tolerance, OverlapRule rule, const SoupSheets& sheets, Progress* progress)
       : imprinted_(imprinted),
         soup_(soup),
         bodies_(bodies),
         tolerance_(tolerance),
         rule_(rule),
-        sheets_(sheets) {}
+        sheets_(sheets),
+        progress_(progress) {}
 
   ComplexResult build() {
-    weld();
-    find_windings();
-    measure_cells();
-    find_overlaps();
-    label_cells();
-    dissolve_thin_cells();
-    assemble();
+    const double bytes =
+        ComplexTuning::Cells::bytes_per_triangle * static_cast<double>(imprinted_.triangles.size());
+    require_imprint_memory(bytes);
+    result_.peak_bytes = std::max(bytes, imprinted_.peak_bytes);
+    using Step = void (ComplexBuilder::*)();
+    for (const Step step :
+         {&ComplexBuilder::weld, &ComplexBuilder::find_windings, &ComplexBuilder::measure_cells,
+          &ComplexBuilder::find_overlaps, &ComplexBuilder::label_cells, &ComplexBuilder::dissolve_thin_cells,
+          &ComplexBuilder::assemble}) {
+      throw_if_stopped();
+      (this->*step)();
+    }
     return std::move(result_);
   }
 
  private:
+  void throw_if_stopped() const {
+    if (progress_) progress_->throw_if_stopped();
+  }
   const Vec3& at(Index p) const { return imprinted_.points[p]; }
   std::span<const Use> uses(Index t) const {
     return std::span(uses_).subspan(welded_[t].first, welded_[t].count);
@@ -122,6 +132,7 @@ class ComplexBuilder {
                        [&](std::size_t i) { return boxes[order[i]]; });
     windings_.assign(cells_.count, std::vector<int>(bodies_, 0));
     parallel_for(0, cells_.count, ComplexGrains::divided, [&](std::size_t begin, std::size_t end) {
+      throw_if_stopped();
       for (std::size_t cell = begin; cell < end; ++cell) {
         const Index own = shown[cell];
         const Triangle& ids = welded_[own].ids;
@@ -411,6 +422,7 @@ class ComplexBuilder {
   double tolerance_;
   OverlapRule rule_;
   const SoupSheets& sheets_;
+  Progress* progress_;
   ComplexResult result_;
   std::vector<std::uint32_t> part_of_;  ///< surface of the soup of each face of a sheet
   std::vector<Welded> welded_;
@@ -423,8 +435,9 @@ class ComplexBuilder {
 };
 
 ComplexResult build_complex(const ImprintedSurfaces& imprinted, const SurfaceSoup& soup, std::size_t bodies,
-                            double tolerance, OverlapRule rule, const SoupSheets& sheets) {
-  return ComplexBuilder(imprinted, soup, bodies, tolerance, rule, sheets).build();
+                            double tolerance, OverlapRule rule, const SoupSheets& sheets,
+                            Progress* progress) {
+  return ComplexBuilder(imprinted, soup, bodies, tolerance, rule, sheets, progress).build();
 }
 
 }  // namespace tetwright

@@ -112,6 +112,7 @@ struct ComplexResult {
   std::vector<char> lost;             ///< by body: nothing of it is left after carving
   std::optional<Vec3> inconsistent;   ///< a point where the cells contradict the bodies' orientation
   std::vector<SheetFate> sheets;      ///< by sheet
+  double peak_bytes = 0;              ///< estimated peak memory of imprinting and labelling
 };
 
 /// The sheets among imprinted surfaces: those after the bodies.
@@ -125,8 +126,11 @@ struct SoupSheets {
 /// \param soup what was imprinted; surfaces are bodies
 /// \param bodies number of bodies; surfaces of the soup from there on are open sheets
 /// \param sheets of the soup
+/// \param progress may be null
+/// \throws OutputError if it needs more memory than is available, see require_memory()
+/// \throws Interrupted
 ComplexResult build_complex(const ImprintedSurfaces& imprinted, const SurfaceSoup& soup, std::size_t bodies,
                             double tolerance, OverlapRule rule = OverlapRule::later,
-                            const SoupSheets& sheets = {});
+                            const SoupSheets& sheets = {}, Progress* progress = nullptr);
 
 }  // namespace tetwright

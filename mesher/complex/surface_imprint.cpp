@@ -40,6 +40,9 @@ class Imprinter : private ImprintState {
     for (int round = 0; round < Imprint::max_rounds; ++round) {
       throw_if_stopped();
       find_pairs(round == 0);
+      const double bytes = Imprint::bytes_per_triangle * static_cast<double>(triangles_.size()) +
+                           Imprint::bytes_per_pair * static_cast<double>(pairs_.size());
+      result_.peak_bytes = std::max(result_.peak_bytes, bytes);
       if (round == 0) budget = std::max(budget, bound.per_pair * static_cast<double>(pairs_.size()));
       std::vector<Event> events = find_events();
       if (events.empty()) {
@@ -66,7 +69,9 @@ class Imprinter : private ImprintState {
       result_.too_many_points =
           static_cast<double>(points_.size() - first_new_) + static_cast<double>(added) > budget;
       if (result_.too_many_points) break;
-      require_imprint_memory(Imprint::bytes_per_event * static_cast<double>(events.size()));
+      const double added_bytes = Imprint::bytes_per_event * static_cast<double>(events.size());
+      require_imprint_memory(added_bytes);
+      result_.peak_bytes = std::max(result_.peak_bytes, bytes + added_bytes);
       insert(events);
     }
     for (const Part& t : triangles_) {

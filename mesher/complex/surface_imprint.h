@@ -29,6 +29,7 @@ struct ImprintedSurfaces {
   /// The last round was the last one because the next would exceed the bound on new points
   /// (ComplexTuning::Imprint); then `unresolved` is set.
   bool too_many_points = false;
+  double peak_bytes = 0;  ///< estimated peak memory of imprinting
 };
 
 /// New points beyond which no further round begins: the larger of both.

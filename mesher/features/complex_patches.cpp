@@ -4,7 +4,9 @@
 #include <algorithm>
 
 #include "mesher/complex/sheet_borders.h"
+#include "mesher/features/sliver_patches.h"
 #include "mesher/input/contact_groups.h"
+#include "mesher/tuning/cell_tuning.h"
 #include "tetwright/error.h"
 
 namespace tetwright {
@@ -62,7 +64,7 @@ void add_sheets(const MesherInput& input, const SheetPatches& of_sheets, Complex
 }  // namespace
 
 ComplexPatches complex_patches(const MesherInput& input, const std::vector<SurfacePatches>& patches,
-                               const SheetPatches& of_sheets) {
+                               const SheetPatches& of_sheets, double cell) {
   const LabelledComplex& complex = *input.complex;
   ComplexPatches out;
   const FaceGroups groups(input);
@@ -93,6 +95,8 @@ ComplexPatches complex_patches(const MesherInput& input, const std::vector<Surfa
     out.patches.push_back(number->second);
   }
   out.points = complex.points;
+  merge_slivers(out.points, out.triangles, out.sheet_of_patch, CellTuning::Patches::sliver * cell * cell,
+                out.patches);
   out.first_continued = static_cast<std::uint16_t>(out.groups.size());
   if (!complex.sheets.empty()) add_sheets(input, of_sheets, out);
   return out;

@@ -41,8 +41,9 @@ struct SheetPatches {
 
 /// \pre input.complex
 /// \param patches of each body's surface
+/// \param cell edge of a finest cell, input units; parts of patches far below a cell join their neighbours
 /// \throws InputError for more than 65,534 patches
 ComplexPatches complex_patches(const MesherInput& input, const std::vector<SurfacePatches>& patches,
-                               const SheetPatches& of_sheets);
+                               const SheetPatches& of_sheets, double cell);
 
 }  // namespace tetwright

@@ -7,20 +7,19 @@
 #include <set>
 
 #include "common/parallel/parallel_sort.h"
-#include "mesher/complex/labelled_complex.h"
 #include "mesher/tuning/cut_tuning.h"
 
 namespace tetwright {
 
 FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches,
                                double corner_reach, std::shared_ptr<const MaterialField> field,
-                               const SheetPatches& of_sheets, const std::vector<TriangleMesh>& caps)
+                               const ComplexPatches* complex, const std::vector<TriangleMesh>& caps)
     : field_(std::move(field)) {
   Items items;
   for (const MaterialLayer& layer : input.layers) bodies_[layer.tag] = 0;
   for (std::size_t b = 0; b < input.bodies.size(); ++b) bodies_[input.bodies[b].tag] = b;
-  if (input.complex)
-    add_complex(input, patches, of_sheets, corner_reach, items);
+  if (complex)
+    add_complex(*complex, corner_reach, items);
   else
     add_bodies(input, patches, corner_reach, caps, items);
   no_patch_ = static_cast<Patch>(groups_.size());
@@ -116,15 +115,13 @@ void FeatureSurface::add_bodies(const MesherInput& input, const std::vector<Surf
   }
 }
 
-void FeatureSurface::add_complex(const MesherInput& input, const std::vector<SurfacePatches>& patches,
-                                 const SheetPatches& of_sheets, double corner_reach, Items& items) {
-  const ComplexPatches found = complex_patches(input, patches, of_sheets);
-  sheets_ = found.sheets;
-  inner_sheets_ = found.inner_sheets;
-  first_continued_ = found.first_continued;
-  sheet_of_patch_ = found.sheet_of_patch;
-  groups_ = found.groups;
-  add_triangles(found.points, found.triangles, found.patches, found.rough, 0, corner_reach, items);
+void FeatureSurface::add_complex(const ComplexPatches& complex, double corner_reach, Items& items) {
+  sheets_ = complex.sheets;
+  inner_sheets_ = complex.inner_sheets;
+  first_continued_ = complex.first_continued;
+  sheet_of_patch_ = complex.sheet_of_patch;
+  groups_ = complex.groups;
+  add_triangles(complex.points, complex.triangles, complex.patches, complex.rough, 0, corner_reach, items);
 }
 
 std::optional<std::size_t> FeatureSurface::sheet_of(const InterfaceTriangle& face) const {
@@ -143,9 +140,7 @@ std::optional<std::size_t> FeatureSurface::sheet_of(const InterfaceTriangle& fac
       if (inner == inner_sheets_.end()) return {};
       return inner->second;
     }
-    const auto known = sheets_.find(std::minmax(label(first), label(second)));
-    if (known == sheets_.end()) return {};
-    return known->second;
+    return sheet_between(label(first), label(second));
   }
   if (!first || !second) return first ? first : second;
   if (*first == *second) return {};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -43,12 +44,12 @@ class FeatureSurface : public ReferenceSurface {
   /// \param patches of each body, in the order of `input.bodies`; renumbered from 0, body by body
   /// \param corner_reach as for find_creases()
   /// \param field answers queries for faces without patches
-  /// \param of_sheets patches of the inner sheets of the input's complex, if it has any
+  /// \param complex patches of the input's complex, if there is one; used instead of `patches`
   /// \param caps of each body's holes, input units, or empty; each triangle continues the patch of the
   /// nearest
   ///   triangle of the body
   FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach,
-                 std::shared_ptr<const MaterialField> field, const SheetPatches& of_sheets = {},
+                 std::shared_ptr<const MaterialField> field, const ComplexPatches* complex = nullptr,
                  const std::vector<TriangleMesh>& caps = {});
 
   double signed_distance(const Vec3& point, MaterialTag material) const override {
@@ -73,6 +74,11 @@ class FeatureSurface : public ReferenceSurface {
   /// material on both sides lies on an inner sheet, whose component is the face's patch.
   std::optional<std::size_t> sheet_of(const InterfaceTriangle& face) const;
   std::size_t sheet_of(Patch patch) const { return sheet_of_patch_[patch]; }
+  /// The sheet between two regions of the complex, or none.
+  std::optional<std::size_t> sheet_between(RegionIndex a, RegionIndex b) const {
+    const auto known = sheets_.find(std::minmax(a, b));
+    return known == sheets_.end() ? std::nullopt : std::optional(known->second);
+  }
   bool has_inner_sheets() const { return !inner_sheets_.empty(); }
   bool is_inner(std::size_t sheet) const { return has_inner_sheets() && sheet >= sheets_.size(); }
   /// True for patches that continue an inner sheet beyond its border.
@@ -116,8 +122,7 @@ class FeatureSurface : public ReferenceSurface {
     std::vector<Vec3> points;
     std::vector<ProjectionTree::Item> triangles, segments;
   };
-  void add_complex(const MesherInput& input, const std::vector<SurfacePatches>& patches,
-                   const SheetPatches& of_sheets, double corner_reach, Items& items);
+  void add_complex(const ComplexPatches& complex, double corner_reach, Items& items);
   void add_bodies(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach,
                   const std::vector<TriangleMesh>& caps, Items& items);
   /// Adds triangles with their patches, and the creases between these.

@@ -7,9 +7,8 @@
 #include <unordered_map>
 #include <utility>
 
-#include "common/features/edge_uses.h"
 #include "common/geometry/predicates.h"
-#include "common/geometry/projection_tree.h"
+#include "mesher/features/strip_finder.h"
 #include "mesher/tuning/cut_tuning.h"
 #include "tetwright/mesh_quality.h"
 
@@ -20,39 +19,11 @@ namespace {
 using Strips = CutTuning::Strips;
 using Labelling = CutTuning::Labelling;
 
-/// Edges of the complex at which four or more sheets meet: faces of as many pairs of regions, or sheets
-/// inside a region.
-ProjectionTree branching_curves(const LabelledComplex& complex) {
-  std::vector<Triangle> triangles;
-  for (const LabelledComplex::Face& f : complex.faces) triangles.push_back(f.ids);
-  for (const LabelledComplex::SheetFace& f : complex.sheets) triangles.push_back(f.ids);
-  const std::vector<EdgeUse> uses = edge_uses(triangles, {});
-  std::vector<Vec3> points;
-  std::vector<ProjectionTree::Item> segments;
-  for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
-    std::set<std::pair<RegionIndex, RegionIndex>> pairs;
-    std::size_t inner = 0;
-    for (; j < uses.size() && uses[j].key == uses[i].key; ++j) {
-      if (uses[j].triangle >= complex.faces.size()) {
-        ++inner;
-        continue;
-      }
-      const LabelledComplex::Face& f = complex.faces[uses[j].triangle];
-      pairs.insert(std::minmax(f.behind, f.front));
-    }
-    if (pairs.size() + inner < Strips::min_sheets) continue;
-    const auto first = static_cast<Index>(points.size());
-    for (const Index p : ends_of(uses[i].key)) points.push_back(complex.points[p]);
-    segments.push_back({{first, first + 1, first + 1}, {}});
-  }
-  return {std::move(points), std::move(segments)};
-}
-
 class StripCollapse {
  public:
-  StripCollapse(TetMesh& mesh, const FeatureSurface& surface, const ProjectionTree& curves, double cell,
-                SheetParts* parts)
-      : mesh_(mesh), surface_(surface), curves_(curves), cell_(cell), parts_(parts) {}
+  StripCollapse(TetMesh& mesh, const FeatureSurface& surface, const StripFinder& finder, double cell,
+                SheetParts* parts, Progress* progress)
+      : mesh_(mesh), surface_(surface), finder_(finder), cell_(cell), parts_(parts), progress_(progress) {}
 
   /// How far the collapse goes.
   enum class Effort : std::uint8_t {
@@ -63,9 +34,11 @@ class StripCollapse {
 
   /// \return whether anything was collapsed
   bool run(Effort effort) {
-    const std::vector<Triangle> strip = strip_faces();
-    if (strip.empty()) return false;
+    const std::vector<Triangle> strip = finder_.faces(mesh_);
+    const std::vector<std::array<Index, 2>> ends = finder_.edges(mesh_);
+    if (strip.empty() && ends.empty()) return false;
     std::set<Index> points = points_of(strip);
+    for (const std::array<Index, 2>& e : ends) points.insert(e.begin(), e.end());
     gather(points);
     makes_room_ = effort == Effort::make_room;
     if (makes_room_) {
@@ -75,8 +48,10 @@ class StripCollapse {
       gather(points);
     }
     bool any = false;
-    for (const auto& [u, v] : edges_of(strip, effort != Effort::across))
+    for (const auto& [u, v] : edges_of(strip, ends, effort != Effort::across)) {
+      if (progress_) progress_->throw_if_stopped();
       any |= collapse(current(u), current(v));
+    }
     if (any || split_) finish();
     return any;
   }
@@ -92,35 +67,6 @@ class StripCollapse {
     return parts_ ? MaterialTag{part_of_[t]} : material_of_[t];
   }
   static bool has(const Tet& t, Index p) { return std::find(t.begin(), t.end(), p) != t.end(); }
-
-  /// Faces near a branching curve between regions that have no sheet near them.
-  std::vector<Triangle> strip_faces() const {
-    std::vector<Triangle> found;
-    for (const InterfaceTriangle& f : mesh_.interfaces) {
-      const Vec3 middle = (at(f.ids[0]) + at(f.ids[1]) + at(f.ids[2])) / 3;
-      if (!curves_.any_within(middle, Strips::curve_reach * cell_)) continue;
-      const auto sheet = surface_.sheet_of(f);
-      if (!sheet || !surface_.nearest(middle, *sheet, Strips::sheet_reach * cell_)) found.push_back(f.ids);
-    }
-    if (!parts_) return found;
-    const SheetedField& field = *parts_->field;
-    const SheetBranches& branches = field.base().sheets()->branches();
-    for (const PartFace& f : part_faces(mesh_, *parts_)) {
-      const SheetedField::Part &a = field.part(parts_->of_tets[f.first]),
-                               &b = field.part(parts_->of_tets[f.second]);
-      if (a.region != b.region) continue;
-      const auto side = [](const SheetedField::Part& part) {
-        return [&part](std::uint32_t component) -> std::optional<bool> {
-          const SheetSides::Side* own = part.sides.of(component);
-          return own ? std::optional(own->in_front) : std::nullopt;
-        };
-      };
-      const Vec3 middle = (at(f.ids[0]) + at(f.ids[1]) + at(f.ids[2])) / 3;
-      if (branches.face_across(field.voxels().to_grid(middle), Strips::curve_reach, side(a), side(b)))
-        found.push_back(f.ids);
-    }
-    return found;
-  }
 
   static std::set<Index> points_of(const std::vector<Triangle>& faces) {
     std::set<Index> points;
@@ -157,10 +103,12 @@ class StripCollapse {
     }
   }
 
-  /// The edges of the strips' faces, or only those that join its sides, or an inner point to one; shortest
-  /// first.
-  std::vector<std::array<Index, 2>> edges_of(const std::vector<Triangle>& strip, bool all) {
+  /// The edges of the strips' faces, or only those that join its sides, or an inner point to one, and further
+  /// ones; shortest first.
+  std::vector<std::array<Index, 2>> edges_of(const std::vector<Triangle>& strip,
+                                             const std::vector<std::array<Index, 2>>& further, bool all) {
     std::set<std::pair<double, std::array<Index, 2>>> edges;
+    for (const std::array<Index, 2>& e : further) edges.insert({(at(e[0]) - at(e[1])).norm(), e});
     for (const Triangle& f : strip)
       for (std::size_t k = 0; k < 3; ++k) {
         const std::array<Index, 2> e = ascending_edge(f[k], f[(k + 1) % 3]);
@@ -298,8 +246,8 @@ class StripCollapse {
   }
 
   std::optional<Vec3> on_curve(const Vec3& p) const {
-    const auto hit =
-        curves_.nearest_of(p, Strips::curve_reach * cell_, [](const ProjectionTree::Item&) { return true; });
+    const auto hit = finder_.curves().nearest_of(p, Strips::curve_reach * cell_,
+                                                 [](const ProjectionTree::Item&) { return true; });
     if (!hit) return {};
     return hit->point;
   }
@@ -314,7 +262,7 @@ class StripCollapse {
       // Points of the boundary stay on it; the end of the curve is a corner.
       if (const auto near = on_curve(at(u_outside ? u : v)))
         if (const auto end = surface_.onto_corner(*near, Strips::curve_reach * cell_);
-            end && curves_.any_within(*end, Labelling::same_curve * cell_))
+            end && finder_.curves().any_within(*end, Labelling::same_curve * cell_))
           places.push_back(*end);
       if (u_outside && v_outside) places.push_back(middle);
       if (u_outside) places.push_back(at(u));
@@ -466,9 +414,10 @@ class StripCollapse {
 
   TetMesh& mesh_;
   const FeatureSurface& surface_;
-  const ProjectionTree& curves_;
+  const StripFinder& finder_;
   double cell_;
   SheetParts* parts_;
+  Progress* progress_;
   static constexpr Index beyond_ = no_index;
   std::vector<Tet> tets_;  ///< those of the mesh, those of the boundary's faces, and those of splits
   std::vector<MaterialTag> material_of_;    ///< by tet
@@ -484,13 +433,13 @@ class StripCollapse {
 }  // namespace
 
 void collapse_strips(TetMesh& mesh, const LabelledComplex& complex, const FeatureSurface& surface,
-                     double cell, SheetParts* parts) {
-  const ProjectionTree curves = branching_curves(complex);
-  if (curves.empty()) return;
+                     double cell, SheetParts* parts, Progress* progress) {
+  const StripFinder finder(complex, surface, cell, parts);
+  if (finder.curves().empty()) return;
   using Effort = StripCollapse::Effort;
   for (const Effort effort : {Effort::across, Effort::all, Effort::make_room})
     for (int round = 0; round < Strips::max_rounds; ++round)
-      if (!StripCollapse(mesh, surface, curves, cell, parts).run(effort)) break;
+      if (!StripCollapse(mesh, surface, finder, cell, parts, progress).run(effort)) break;
 }
 
 }  // namespace tetwright

@@ -4,6 +4,7 @@
 #include "mesher/complex/labelled_complex.h"
 #include "mesher/cut/sheet_faces.h"
 #include "mesher/features/feature_surface.h"
+#include "tetwright/progress.h"
 #include "tetwright/tet_mesh.h"
 
 namespace tetwright {
@@ -15,9 +16,11 @@ namespace tetwright {
 /// a shape. What cannot be collapsed stays. Points end up near the curve; fit_creases() moves them onto it.
 /// `mesh.interfaces` are found anew. Serial.
 /// \param cell size of the cells at the surface, input units
+/// \param progress may be null
 /// \param parts null, or those of the mesh: strips between parts of a region are collapsed, too
+/// \throws Interrupted, OutOfTime
 /// \pre the interfaces of the mesh have no patches yet, and those of sheets are not among them
 void collapse_strips(TetMesh& mesh, const LabelledComplex& complex, const FeatureSurface& surface,
-                     double cell, SheetParts* parts);
+                     double cell, SheetParts* parts, Progress* progress);
 
 }  // namespace tetwright

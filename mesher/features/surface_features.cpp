@@ -189,9 +189,7 @@ void report_features(const MesherInput& input, const std::vector<SurfacePatches>
 }
 
 /// Reports the creases of a complex: for each sheet, those between its patches.
-void report_complex_creases(const MesherInput& input, const std::vector<SurfacePatches>& patches,
-                            const SheetPatches& of_sheets, MesherReport& report) {
-  const ComplexPatches found = complex_patches(input, patches, of_sheets);
+void report_complex_creases(const MesherInput& input, const ComplexPatches& found, MesherReport& report) {
   std::vector<std::vector<Triangle>> triangles(found.sheets.size());
   std::vector<std::vector<std::uint16_t>> of_triangles(found.sheets.size());
   for (std::size_t t = 0; t < input.complex->faces.size(); ++t) {
@@ -244,7 +242,7 @@ void allow_for_chamfers(MesherReport& report) {
 }  // namespace
 
 SurfaceFeatures find_features(const MesherInput& input, const MesherOptions& options, double cell) {
-  return {patches_of_bodies(input, options, cell), patches_of_sheets(input, options, cell)};
+  return {patches_of_bodies(input, options, cell), patches_of_sheets(input, options, cell), {}};
 }
 
 bool has_features(const MesherInput& input, const SurfaceFeatures& features) {
@@ -264,10 +262,12 @@ void settle_features(const MesherInput& input, SurfaceFeatures& features, DenseM
   if (!input.complex) give_up_where_surfaces_meet(input, dense.mesh, features.bodies);
   give_up_where_gaps_are_closed(input, dense.report, features.bodies);
   report_features(input, features.bodies, dense.report);
-  if (input.complex)
-    report_complex_creases(input, features.bodies, features.sheets, dense.report);
-  else if (has_features(input, features))
+  if (input.complex) {
+    features.complex = complex_patches(input, features.bodies, features.sheets, dense.report.cell_size);
+    report_complex_creases(input, *features.complex, dense.report);
+  } else if (has_features(input, features)) {
     keep_visible(dense.report.creases, input, dense);
+  }
   allow_for_chamfers(dense.report);
 }
 

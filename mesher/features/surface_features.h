@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "mesher/features/complex_patches.h"
@@ -12,7 +13,8 @@ namespace tetwright {
 /// The patches of all surfaces of an input. Creases are the borders between them.
 struct SurfaceFeatures {
   std::vector<SurfacePatches> bodies;
-  SheetPatches sheets;  ///< of the complex, if there is one
+  SheetPatches sheets;                    ///< of the complex, if there is one
+  std::optional<ComplexPatches> complex;  ///< likewise; set by settle_features()
 };
 
 /// Finds the patches of bodies and sheets.

@@ -218,7 +218,8 @@ void join_bodies(MesherInput& input, const SheetSoup& sheets, const ContactOptio
     return;
   }
   ComplexResult found =
-      build_complex(imprinted, soup, input.bodies.size(), tolerance, options.overlap, in_soup);
+      build_complex(imprinted, soup, input.bodies.size(), tolerance, options.overlap, in_soup, progress);
+  input.joined_bytes = found.peak_bytes;
   if (found.inconsistent) {
     not_joined(input.bodies.back().file, "a surface crosses itself there; contacts are accurate to a cell",
                *found.inconsistent);

@@ -23,7 +23,7 @@ bool resolve_self_crossings(MesherInput::Body& body, double tolerance, Progress*
   if (!imprinted.any || imprinted.unresolved) return false;
   SurfaceSoup whole = std::move(by_patch);
   whole.surface.assign(whole.triangles.size(), 0);
-  const ComplexResult found = build_complex(imprinted, whole, 1, tolerance);
+  const ComplexResult found = build_complex(imprinted, whole, 1, tolerance, OverlapRule::later, {}, progress);
   if (found.inconsistent || found.lost[0]) return false;
 
   RepairedSurface resolved;

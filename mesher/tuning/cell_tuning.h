@@ -126,7 +126,11 @@ struct CellTuning {
     /// A surface whose points are all within this distance of a plane, in diagonals, encloses nothing in
     /// cells of any size.
     static constexpr double flat_surface = 1e-6;
-    static constexpr double min_area = 8;      ///< squared cells: cells do not resolve smaller patches
+    static constexpr double min_area = 8;  ///< squared cells: cells do not resolve smaller patches
+    /// Squared cells: imprinting leaves smaller parts of patches where curves of several surfaces coincide
+    /// within the tolerance. No face shows a part this small, while patches that a thin body deserves are
+    /// larger.
+    static constexpr double sliver = 0.1;
     static constexpr double corner_reach = 1;  ///< cells: turns within this distance are not corners
     /// Distance, cells, from a curve where three regions meet within which creases are not reported, and max
     /// distance of a reported crease from a visible surface: such curves are accurate to half a cell only.

@@ -39,6 +39,8 @@ struct ComplexTuning {
     /// a triangle, with all that follows from it: one and a half times what 300 to 20,000 crossing triangles
     /// at random took.
     static constexpr double bytes_per_pair = 60, bytes_per_event = 1000;
+    /// Bytes at the peak for each triangle, met or not.
+    static constexpr double bytes_per_triangle = 200;
     /// Squared distance, in squared tolerances, beyond which a point that another step of the same round has
     /// moved is no longer put on an edge.
     static constexpr double moved_away = 4;
@@ -53,6 +55,8 @@ struct ComplexTuning {
   };
 
   struct Cells {
+    /// Bytes at the peak for each triangle while cells are found and labelled, with what imprinting leaves.
+    static constexpr double bytes_per_triangle = 600;
     static constexpr std::size_t leaf_size = 4;  ///< of the tree of triangles
     /// A cell joins a neighbour if its volume is below this, in tolerances times the area around it: a slab
     /// of half the tolerance, whose area counts twice.

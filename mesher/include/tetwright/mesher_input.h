@@ -262,6 +262,7 @@ struct MesherInput {
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  ///< bounding box of all bodies, input units
   /// All surfaces as one complex, if some of them meet.
   std::shared_ptr<const LabelledComplex> complex = {};
+  double joined_bytes = 0;                   ///< estimated peak memory while bodies were joined
   std::vector<ContactReport> contacts = {};  ///< by pair of bodies
   std::vector<OverlapReport> overlaps = {};
   std::vector<Sheet> sheets = {};
