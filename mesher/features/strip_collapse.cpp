@@ -35,7 +35,7 @@ class StripCollapse {
   /// \return whether anything was collapsed
   bool run(Effort effort) {
     const std::vector<Triangle> strip = finder_.faces(mesh_);
-    const std::vector<std::array<Index, 2>> ends = finder_.edges(mesh_);
+    const std::vector<std::array<Index, 2>> ends = finder_.edges(mesh_, !strip.empty());
     if (strip.empty() && ends.empty()) return false;
     std::set<Index> points = points_of(strip);
     for (const std::array<Index, 2>& e : ends) points.insert(e.begin(), e.end());
