@@ -9,6 +9,7 @@
 
 #include "common/geometry/predicates.h"
 #include "mesher/features/strip_finder.h"
+#include "mesher/features/untangling.h"
 #include "mesher/tuning/cut_tuning.h"
 #include "tetwright/mesh_quality.h"
 
@@ -343,6 +344,49 @@ class StripCollapse {
     for (const Index q : around) valid &= worst_shape_at(q, u, v, position) > Strips::min_solid_angle;
     if (valid) return position;
     restore(before);
+    return untangled(u, v, around, position, before);
+  }
+
+  /// Moves all points around an edge together so that its collapse leaves positive tets.
+  /// \param position a first guess
+  std::optional<Vec3> untangled(Index u, Index v, const std::set<Index>& around, const Vec3& position,
+                                std::map<Index, Vec3>& before) {
+    std::map<Index, Index> local;
+    std::vector<Vec3> points;
+    std::vector<std::uint8_t> is_locked;
+    const auto number = [&](Index p) {
+      if (p == v) p = u;
+      const auto [known, is_new] = local.try_emplace(p, static_cast<Index>(points.size()));
+      if (is_new) {
+        points.push_back(((p == u ? position : at(p)) - position) / cell_);
+        is_locked.push_back(p == u ? !(is_inner(u) && is_inner(v)) : !around.contains(p));
+      }
+      return known->second;
+    };
+    std::set<Index> patch;
+    std::set<Index> moving = around;
+    moving.insert({u, v});
+    for (const Index p : moving)
+      for (const Index t : at_.at(p))
+        if (!removed_[t] && is_real(tets_[t]) && !(has(tets_[t], u) && has(tets_[t], v))) patch.insert(t);
+    std::vector<Tet> tets;
+    for (const Index t : patch) {
+      Tet ids;
+      std::transform(tets_[t].begin(), tets_[t].end(), ids.begin(), number);
+      tets.push_back(ids);
+    }
+    if (!untangle(points, tets, is_locked)) return {};
+    for (const Tet& t : tets)
+      if (!(orient3d(points[t[0]], points[t[1]], points[t[2]], points[t[3]]) > 0)) return {};
+    for (const Index q : around) {
+      before.try_emplace(q, at(q));
+      mesh_.points[q] = position + cell_ * points[local.at(q)];
+    }
+    const Vec3 result = position + cell_ * points[local.at(u)];
+    bool valid = worst_shape(u, v, result) > Strips::min_solid_angle;
+    for (const Index q : around) valid &= worst_shape_at(q, u, v, result) > Strips::min_solid_angle;
+    if (valid) return result;
+    restore(before);
     return {};
   }
 
@@ -356,19 +400,17 @@ class StripCollapse {
     std::optional<std::set<Index>> others = in_the_way(u, v);
     if (!others) return false;
     std::map<Index, Vec3> before;
-    std::optional<Vec3> position = best_position(u, v, before);
-    if (!position) return false;
     if (!others->empty()) {
-      // Points that moved are valid only if the edge is collapsed.
-      restore(before);
       if (others->size() > Strips::max_splits || others->contains(beyond_)) return false;
+      // Where no points make room, edges are split only if there is a position.
+      if (!makes_room_ && !best_position(u, v, before)) return false;
       for (const Index p : *others)
         if (!part_from(p, u, v)) return false;
       others = in_the_way(u, v);
       if (!others || !others->empty()) return false;
-      position = best_position(u, v, before);
-      if (!position) return false;
     }
+    const std::optional<Vec3> position = best_position(u, v, before);
+    if (!position) return false;
     std::vector<Index>& kept = at_[u];
     for (const Index t : at_[v]) {
       if (removed_[t]) continue;

@@ -134,7 +134,20 @@ struct CutTuning {
     /// Max sweeps over the points that make room: later ones gain little.
     static constexpr int max_sweeps = 6;
     /// Max edges that are split so that an edge may be collapsed: mostly it is one.
-    static constexpr std::size_t max_splits = 4;
+    static constexpr std::size_t max_splits = 8;
+  };
+
+  /// Moves of a few dozen points until all tets around them are positive.
+  struct Untangling {
+    /// Rounds, each with a smaller regularisation (Garanzha et al. 2021 use 128 for whole meshes), and steps
+    /// of L-BFGS in each, with the number of earlier steps that it remembers.
+    static constexpr int max_rounds = 40, max_steps = 60;
+    static constexpr std::size_t memory = 6;
+    static constexpr int max_halvings = 30;
+    /// Relative gain of a step below which a round ends: later rounds go on from there.
+    static constexpr double min_gain = 1e-4;
+    /// Volume that is enough, as a share of the mean of all tets: fitting and simplification improve shapes.
+    static constexpr double min_determinant = 0.02;
   };
 
   /// Moves of boundary points to their patch, crease or corner (the guide, Fitting creases, step 5).

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesher/features/untangling.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "mesher/tuning/cut_tuning.h"
+
+namespace tetwright {
+
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::VectorXd;
+using Limits = CutTuning::Untangling;
+
+/// The distortion of the tets of a mesh, as a function of the points that may move.
+class Distortion {
+ public:
+  Distortion(std::vector<Vec3>& points, std::span<const Tet> tets, std::span<const std::uint8_t> is_locked)
+      : points_(points), tets_(tets), number_(points.size(), no_index) {
+    for (Index p = 0; p < points.size(); ++p)
+      if (!is_locked[p]) number_[p] = static_cast<Index>(free_++);
+    double volume = 0;
+    for (const Tet& t : tets) volume += std::abs(edges(t).determinant()) / 6;
+    volume /= static_cast<double>(std::max<std::size_t>(1, tets.size()));
+    // The edges of a regular tet of the mean volume.
+    Matrix3d regular;
+    regular << 1, 0.5, 0.5, 0, std::sqrt(3) / 2, std::sqrt(3) / 6, 0, 0, std::sqrt(2.0 / 3);
+    from_regular_ = (std::cbrt(6 * volume / regular.determinant()) * regular).inverse();
+  }
+
+  VectorXd position() const {
+    VectorXd x(3 * free_);
+    for (Index p = 0; p < points_.size(); ++p)
+      if (number_[p] != no_index) x.segment<3>(3 * number_[p]) = points_[p];
+    return x;
+  }
+  void move_to(const VectorXd& x) {
+    for (Index p = 0; p < points_.size(); ++p)
+      if (number_[p] != no_index) points_[p] = x.segment<3>(3 * number_[p]);
+  }
+  double min_determinant() const {
+    double least = INFINITY;
+    for (const Tet& t : tets_) least = std::min(least, (edges(t) * from_regular_).determinant());
+    return least;
+  }
+
+  /// Positive, about equal to the determinant where that is large, and to nothing where it is negative.
+  static double regularised(double determinant, double epsilon) {
+    return (determinant + std::hypot(epsilon, determinant)) / 2;
+  }
+
+  /// \param gradient receives the derivatives by the coordinates of the points that may move
+  double value(double epsilon, VectorXd* gradient) const {
+    double sum = 0;
+    if (gradient) *gradient = VectorXd::Zero(3 * free_);
+    for (const Tet& t : tets_) {
+      const Matrix3d j = edges(t) * from_regular_;
+      const double determinant = j.determinant(), chi = regularised(determinant, epsilon);
+      const double root = std::cbrt(chi), shape = j.squaredNorm() / (root * root);
+      const double size = (1 + determinant * determinant) / chi;
+      sum += shape + size;
+      if (!gradient) continue;
+      Matrix3d cofactor;
+      cofactor.col(0) = j.col(1).cross(j.col(2));
+      cofactor.col(1) = j.col(2).cross(j.col(0));
+      cofactor.col(2) = j.col(0).cross(j.col(1));
+      const double chi_slope = (1 + determinant / std::hypot(epsilon, determinant)) / 2;
+      const double slope =
+          -2.0 / 3 * shape / chi * chi_slope + 2 * determinant / chi - size / chi * chi_slope;
+      const Matrix3d by_edges = (2 / (root * root) * j + slope * cofactor) * from_regular_.transpose();
+      add(t[0], -by_edges.rowwise().sum(), *gradient);
+      for (int k = 0; k < 3; ++k) add(t[k + 1], by_edges.col(k), *gradient);
+    }
+    return sum;
+  }
+
+ private:
+  Matrix3d edges(const Tet& t) const {
+    Matrix3d e;
+    for (int k = 0; k < 3; ++k) e.col(k) = points_[t[k + 1]] - points_[t[0]];
+    return e;
+  }
+  void add(Index p, const Vec3& slope, VectorXd& gradient) const {
+    if (number_[p] != no_index) gradient.segment<3>(3 * number_[p]) += slope;
+  }
+
+  std::vector<Vec3>& points_;
+  std::span<const Tet> tets_;
+  std::vector<Index> number_;  ///< of points that may move
+  Index free_ = 0;
+  Matrix3d from_regular_;
+};
+
+/// L-BFGS (Nocedal 1980) with halved steps.
+/// \return the value reached
+double minimise(Distortion& distortion, double epsilon) {
+  VectorXd x = distortion.position(), gradient;
+  double value = distortion.value(epsilon, &gradient);
+  std::deque<std::pair<VectorXd, VectorXd>> pairs;  // steps and changes of the gradient, latest first
+  for (int step = 0; step < Limits::max_steps; ++step) {
+    VectorXd direction = -gradient;
+    std::vector<double> weights;
+    for (const auto& [s, y] : pairs) {
+      weights.push_back(s.dot(direction) / s.dot(y));
+      direction -= weights.back() * y;
+    }
+    if (!pairs.empty())
+      direction *= pairs.front().first.dot(pairs.front().second) / pairs.front().second.squaredNorm();
+    for (std::size_t i = pairs.size(); i-- > 0;)
+      direction += (weights[i] - pairs[i].second.dot(direction) / pairs[i].first.dot(pairs[i].second)) *
+                   pairs[i].first;
+    const double slope = gradient.dot(direction);
+    if (!(slope < 0)) break;
+    double share = pairs.empty() ? std::min(1.0, 0.1 / direction.norm()) : 1;
+    VectorXd next, next_gradient;
+    double reached = INFINITY;
+    for (int halving = 0; halving < Limits::max_halvings; ++halving, share /= 2) {
+      next = x + share * direction;
+      distortion.move_to(next);
+      reached = distortion.value(epsilon, &next_gradient);
+      if (reached <= value + 1e-4 * share * slope) break;
+    }
+    if (!(reached < value)) {
+      distortion.move_to(x);
+      break;
+    }
+    const bool has_arrived = value - reached < Limits::min_gain * value;
+    if (const VectorXd y = next_gradient - gradient; y.dot(next - x) > 0) pairs.emplace_front(next - x, y);
+    if (pairs.size() > Limits::memory) pairs.pop_back();
+    x = std::move(next);
+    gradient = std::move(next_gradient);
+    value = reached;
+    if (has_arrived) break;
+  }
+  return value;
+}
+
+}  // namespace
+
+bool untangle(std::vector<Vec3>& points, std::span<const Tet> tets, std::span<const std::uint8_t> is_locked) {
+  Distortion distortion(points, tets, is_locked);
+  double epsilon = 1;
+  for (int round = 0; round < Limits::max_rounds; ++round) {
+    const double before = distortion.value(epsilon, nullptr), after = minimise(distortion, epsilon);
+    const double least = distortion.min_determinant();
+    if (least > Limits::min_determinant) return true;
+    const double gain = std::max(1 - after / before, 0.1);
+    const double aim = (1 - gain) * Distortion::regularised(least, epsilon);
+    epsilon = least < aim ? 2 * std::sqrt(aim * (aim - least)) : 1e-10;
+  }
+  return distortion.min_determinant() > 0;
+}
+
+}  // namespace tetwright
