@@ -216,7 +216,11 @@ void StripFinder::add_pinches(const TetMesh& mesh, const Faces& near, Edges& edg
     if (!is_meant(e.surface, (mesh.points[e.ends[0]] + mesh.points[e.ends[1]]) / 2)) edges.insert(e.ends);
   for (const SurfacePinches::Point& p : found.points) {
     if (is_meant(p.surface, mesh.points[p.point])) continue;
-    for (const Index q : p.beside) edges.insert(ascending_edge(p.point, q));
+    const Vec3& position = mesh.points[p.point];
+    const Index nearest = *std::min_element(p.beside.begin(), p.beside.end(), [&](Index a, Index b) {
+      return (mesh.points[a] - position).squaredNorm() < (mesh.points[b] - position).squaredNorm();
+    });
+    edges.insert(ascending_edge(p.point, nearest));
   }
 }
 
