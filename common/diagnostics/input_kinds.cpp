@@ -60,6 +60,13 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
      .cause = "Triangles with the solid, or the outside, on both sides.",
      .remedy =
          "None needed. Sheets that close a cell make it a material, unless `--regions outer` is given."},
+    {.code = walls_kept_as_sheets,
+     .name = "walls-kept-as-sheets",
+     .severity = Severity::note,
+     .title = "walls of zero thickness kept",
+     .message = "N walls of zero thickness inside 'NAME', with an area of A (kept as the sheet 'SHEET')",
+     .cause = "Parts of the body's surface have its material on both sides.",
+     .remedy = "None needed. `--regions outer` leaves them out."},
     {.code = triangles_turned,
      .name = "triangles-turned",
      .severity = Severity::note,

@@ -16,6 +16,7 @@
 #include "mesher/input/surface_components.h"
 #include "mesher/input/surface_holes.h"
 #include "mesher/input/surface_measures.h"
+#include "mesher/input/connected_patches.h"
 #include "mesher/tuning/input_tuning.h"
 #include "tetwright/error.h"
 
@@ -111,6 +112,17 @@ void order_from_top(std::vector<SurfaceCell>& cells) {
   cells = std::move(sorted);
 }
 
+/// Names in quotes, of many the first ones.
+std::string listed(const std::set<std::string>& names) {
+  std::string text;
+  std::size_t count = 0;
+  for (const std::string& name : names) {
+    if (count == InputTuning::Messages::max_named_walls) return text + " and more";
+    text += (count++ == 0 ? " '" : ", '") + name + "'";
+  }
+  return text;
+}
+
 }  // namespace
 
 MaterialTag BodyBuilder::free_tag() {
@@ -118,10 +130,11 @@ MaterialTag BodyBuilder::free_tag() {
   return next_tag_;
 }
 
-/// Cleans the surfaces, closes their flat holes, and names the holes of all surfaces together. Frees points
-/// and triangles of `surfaces`; their groups receive those of caps.
+/// Cleans the surfaces, takes walls out, closes flat holes, and names the holes of all surfaces together.
+/// Frees points and triangles of `surfaces`; their groups receive those of caps.
 std::vector<BodyBuilder::ClosedSurface> BodyBuilder::close_holes(std::vector<MaterialSurface>& surfaces,
-                                                                 std::set<std::string> names) {
+                                                                 NestedRule nested, RegionRule rule,
+                                                                 bool partitioned) {
   std::vector<ClosedSurface> closed;
   std::vector<SurfaceHole>& holes = input_.holes;
   Vec3 low = Vec3::Constant(INFINITY), high = Vec3::Constant(-INFINITY);
@@ -133,7 +146,10 @@ std::vector<BodyBuilder::ClosedSurface> BodyBuilder::close_holes(std::vector<Mat
     s.surface.triangles = {};
     s.surface.triangle_groups = {};
     for (const Vec3& p : own.cleaned.points) low = low.cwiseMin(p), high = high.cwiseMax(p);
-    for (const SurfaceRegion& group : s.surface.groups) names.insert(group.name);
+    for (const SurfaceRegion& group : s.surface.groups) names_.insert(group.name);
+    own.walled = separate_walls(own.cleaned, s.file, nested, rule, contact_, progress_);
+    if (own.has_cells() && partitioned) own.walled.reset();
+    if (own.has_cells()) continue;
     for (SurfaceHole& hole : close_flat_holes(own.cleaned, s.surface.groups, s.file, caps_, own.findings)) {
       hole.surface = i;
       holes.push_back(std::move(hole));
@@ -141,7 +157,7 @@ std::vector<BodyBuilder::ClosedSurface> BodyBuilder::close_holes(std::vector<Mat
     if (progress_) progress_->throw_if_stopped();
   }
   order_holes(holes);
-  name_holes(holes, caps_.names, names, (high - low).norm());
+  name_holes(holes, caps_.names, names_, (high - low).norm());
   for (const SurfaceHole& hole : holes)
     if (hole.sharp) surfaces[hole.surface].surface.groups[hole.group] = {0, hole.name};
   return closed;
@@ -149,16 +165,18 @@ std::vector<BodyBuilder::ClosedSurface> BodyBuilder::close_holes(std::vector<Mat
 
 void BodyBuilder::add(std::vector<MaterialSurface> surfaces, NestedRule nested, RegionRule rule,
                       const std::vector<Partition>& partitions, std::set<std::string> names) {
-  std::vector<ClosedSurface> closed = close_holes(surfaces, std::move(names));
+  names_ = std::move(names);
+  std::vector<ClosedSurface> closed = close_holes(surfaces, nested, rule, !partitions.empty());
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     MaterialSurface& s = surfaces[i];
     std::vector<Diagnostic>& findings = closed[i].findings;
-    CleanedSurface cleaned = std::move(closed[i].cleaned);
     const std::vector<SurfaceRegion> groups = s.surface.groups;
-    if (!add_layers(cleaned, s, nested, partitions, findings) &&
-        (rule == RegionRule::outer || !may_have_inner_walls(cleaned) ||
-         !add_cells(cleaned, s, nested, findings))) {
-      SurfaceRepair repaired = repair_cleaned(std::move(cleaned), s.file, nested, std::move(findings));
+    if (const std::optional<WalledSurface>& walled = closed[i].walled; walled && walled->walls)
+      take_walls(*walled->walls, *walled->given, walled->divided, s, rule, findings);
+    if (!add_layers(closed[i].cleaned, s, nested, partitions, findings) &&
+        (rule == RegionRule::outer || !add_cells(closed[i], s, nested))) {
+      SurfaceRepair repaired =
+          repair_cleaned(std::move(closed[i].cleaned), s.file, nested, std::move(findings));
       findings = std::move(repaired.findings);
       input_.bodies.push_back({s.name, s.tag, s.file, std::move(repaired.surface), groups});
       for (std::size_t k = 0; k < repaired.nested.size(); ++k)
@@ -297,21 +315,57 @@ void BodyBuilder::report_partitions(const DividedSurface& divided, const Partiti
 
 /// Adds the cells of a surface as bodies.
 /// \return false if inner walls do not divide it
-bool BodyBuilder::add_cells(const CleanedSurface& cleaned, const MaterialSurface& from, NestedRule nested,
-                            std::vector<Diagnostic>& findings) {
-  const double tolerance = tolerance_for(cleaned, from);
-  DividedSurface divided = divide_surface(cleaned, tolerance, progress_);
-  if (divided.unresolved)
-    findings.push_back({.code = DiagnosticCode::bodies_not_joined,
-                        .what = "parts of a surface that meet are not joined",
-                        .done = "their facets there are about as small as the contact tolerance of " +
-                                short_number(tolerance) + "; inner walls are left out",
-                        .places = {*divided.unresolved}});
-  if (!divided.has_inner_walls()) return false;
+bool BodyBuilder::add_cells(ClosedSurface& surface, const MaterialSurface& from, NestedRule nested) {
+  std::vector<Diagnostic>& findings = surface.findings;
+  if (!surface.has_cells()) {
+    if (!may_have_inner_walls(surface.cleaned)) return false;
+    const double tolerance = tolerance_for(surface.cleaned, from);
+    WalledSurface walled;
+    walled.divided = divide_surface(surface.cleaned, tolerance, progress_);
+    if (walled.divided.unresolved)
+      findings.push_back({.code = DiagnosticCode::bodies_not_joined,
+                          .what = "parts of a surface that meet are not joined",
+                          .done = "their facets there are about as small as the contact tolerance of " +
+                                  short_number(tolerance) + "; inner walls are left out",
+                          .places = {*walled.divided.unresolved}});
+    if (!walled.divided.has_inner_walls()) return false;
+    walled.patches = find_connected_patches(surface.cleaned.points, surface.cleaned.triangles);
+    surface.walled = std::move(walled);
+  }
+  DividedSurface& divided = surface.walled->divided;
+  const CleanedSurface& given = surface.walled->given ? *surface.walled->given : surface.cleaned;
   arrange_shells(divided.cells, nested, findings);
-  report_cells(divided, findings);
+  std::vector<const RepairedSurface*> solids;
+  for (const SurfaceCell& cell : divided.cells) solids.push_back(&cell.surface);
+  const InnerWalls walls = walls_inside(solids, given, surface.walled->patches, divided);
+  report_cells(divided, walls, findings);
+  take_walls(walls, given, divided, from, RegionRule::cells, findings);
   add_bodies(std::move(divided.cells), from, from.surface.groups);
   return true;
+}
+
+/// Keeps walls as sheets, or leaves them out as asked or where there are layers.
+void BodyBuilder::take_walls(const InnerWalls& walls, const CleanedSurface& surface,
+                             const DividedSurface& divided, const MaterialSurface& from, RegionRule rule,
+                             std::vector<Diagnostic>& findings) {
+  if (walls.kept.triangles.empty()) return;
+  const std::string with_area = "inside '" + from.name + "', with an area of " + short_number(walls.area);
+  if (rule == RegionRule::outer || !input_.layers.empty()) {
+    add_finding(findings, DiagnosticCode::inner_walls_dropped, "triangles of walls " + with_area,
+                walls.kept.triangles.size(), walls.place, "left out");
+    return;
+  }
+  WallSheet sheet = sheet_of_walls(walls, surface, divided, from, names_);
+  std::erase_if(input_.groups, [&](const MesherInput::Group& g) {
+    return std::find(sheet.groups.begin(), sheet.groups.end(), g.group) != sheet.groups.end();
+  });
+  std::set<std::string> names;
+  for (const SurfaceRegion& group : sheet.sheet.surface.groups) names.insert(group.name);
+  if (names.empty()) names.insert(sheet.sheet.name);
+  add_finding(findings, DiagnosticCode::walls_kept_as_sheets, "walls of zero thickness " + with_area,
+              walls.pieces, walls.place,
+              "kept as the sheet" + std::string(names.size() > 1 ? "s" : "") + listed(names));
+  walls_.push_back(std::move(sheet.sheet));
 }
 
 void BodyBuilder::add_bodies(std::vector<SurfaceCell> cells, const MaterialSurface& from,
@@ -334,12 +388,13 @@ std::string BodyBuilder::cell_name(const SurfaceCell& cell, std::size_t number, 
   return from.name + "_" + std::to_string(number);
 }
 
-void BodyBuilder::report_cells(const DividedSurface& divided, std::vector<Diagnostic>& findings) const {
+void BodyBuilder::report_cells(const DividedSurface& divided, const InnerWalls& walls,
+                               std::vector<Diagnostic>& findings) const {
   add_finding(findings, DiagnosticCode::cells_separated, "cells between the inner walls of a surface",
               divided.cells.size(), divided.cells[0].surface.points[0], "each a material of its own");
   add_finding(findings, DiagnosticCode::inner_walls_dropped,
-              "triangles of sheets that bound no cell, with an area of " + short_number(divided.sheet_area),
-              divided.sheet_triangles, divided.sheet, "left out");
+              "triangles of sheets that bound no cell, with an area of " + short_number(walls.dropped_area),
+              walls.dropped, walls.dropped_place, "left out");
   add_finding(findings, DiagnosticCode::inner_walls_dropped,
               "cells that are tiny or thinner than the tolerance", divided.dissolved_cells, divided.dissolved,
               "joined with a neighbour");

@@ -68,8 +68,13 @@ class SurfaceDivider {
     SurfaceSoup soup;
     soup.points = surface_.points;
     std::vector<Index> origin;
+    result_.bounds.assign(surface_.triangles.size(), 0);
+    result_.between.assign(surface_.triangles.size(), 0);
     for (Index t = 0; t < surface_.triangles.size(); ++t) {
-      if (surface_.two_sided[t] && surface_.even[t]) continue;
+      if (surface_.two_sided[t] && surface_.even[t]) {
+        result_.bounds[t] = 1;
+        continue;
+      }
       soup.triangles.push_back(surface_.triangles[t]);
       origin.push_back(t);
     }
@@ -186,8 +191,12 @@ class SurfaceDivider {
   void find_sheets() {
     double largest = -1;
     for (Index t = 0; t < triangles_.size(); ++t) {
-      const Index behind = label(cells_.sides[t][0]);
-      if (behind != label(cells_.sides[t][1])) continue;
+      const Index behind = label(cells_.sides[t][0]), front = label(cells_.sides[t][1]);
+      const bool is_bound = cells_.sides[t][0] != cells_.sides[t][1];
+      if (is_bound) result_.bounds[source_[t]] = 1;
+      if (behind != front && behind != label(outside_) && front != label(outside_))
+        result_.between[source_[t]] = 1;
+      if (behind != front) continue;
       const double own = area(t);
       ++result_.sheet_triangles;
       result_.sheet_area += own;
@@ -195,7 +204,9 @@ class SurfaceDivider {
       result_.sheets.push_back({{corner(t, 0), corner(t, 1), corner(t, 2)},
                                 source_[t],
                                 behind == label(outside_),
-                                at_border_[t] != 0});
+                                at_border_[t] != 0,
+                                cells_.sides[t][0],
+                                is_bound});
       if (own > largest) largest = own, result_.sheet = centre(t);
     }
   }

@@ -111,6 +111,28 @@ void validate_materials(const MesherInput& input) {
     }
 }
 
+/// Joins bodies and sheets, together with walls of their files.
+/// \return false, with a note why, if walls prevent that; nothing else has changed then
+bool join_with_walls(MesherInput& input, const SheetSoup& inner, const std::vector<SheetSurface>& walls,
+                     const ContactOptions& contact, Progress* progress) {
+  MesherInput joined = input;
+  SheetSoup all = inner;
+  try {
+    for (const SheetSurface& s : walls) all.add(s, joined.sheets, joined.findings);
+    join_bodies(joined, all, contact, progress);
+  } catch (const InputError& e) {
+    for (const SheetSurface& s : walls)
+      input.findings.push_back({.code = DiagnosticCode::inner_walls_dropped,
+                                .file = s.file,
+                                .what = "walls of zero thickness, after all",
+                                .done = "left out: " + std::string(e.what()),
+                                .places = {s.surface.points[0]}});
+    return false;
+  }
+  input = std::move(joined);
+  return true;
+}
+
 }  // namespace
 
 double longest_side(const MesherInput& input) { return (input.high - input.low).maxCoeff(); }
@@ -127,6 +149,7 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
   name_groups(surfaces, input.findings);
   input.groups = measure_groups(surfaces);
   std::set<MaterialTag> tags = tags_in_use(surfaces, layers);
+  input.layers = std::move(layers);
   BodyBuilder builder(input, std::move(tags), contact, caps, progress);
   std::vector<Partition> partitions;
   for (const SheetSurface& s : sheets.surfaces)
@@ -135,7 +158,6 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
   for (const SheetSurface& s : sheets.surfaces) names.insert(s.name);
   builder.add(std::move(surfaces), nested, regions.rule, partitions, std::move(names));
   builder.name(regions.seeds);
-  input.layers = std::move(layers);
   find_bounding_box(input);
   validate_materials(input);
   require_measurable(longest_side(input), largest_coordinate(input), "surface", input.bodies[0].file);
@@ -147,6 +169,8 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
                      input.layers[0].name + "'; leave out one of them, or give the layer as a surface");
   const double tolerance = contact_tolerance(contact, (input.high - input.low).norm());
   for (MesherInput::Body& body : input.bodies) resolve_self_crossings(body, tolerance, progress);
+  if (!builder.walls().empty() && join_with_walls(input, inner, builder.walls(), contact, progress))
+    return input;
   join_bodies(input, inner, contact, progress);
   return input;
 }

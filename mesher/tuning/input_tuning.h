@@ -46,6 +46,16 @@ struct InputTuning {
     static constexpr double step_inside = 1e-4;
   };
 
+  /// Walls of zero thickness that are part of a body's surface.
+  struct Walls {
+    /// Share of a patch that must be inside the body: a wall may reach beyond it, a loose piece beside it is
+    /// none.
+    static constexpr double inside_share = 0.5;
+    /// Smaller pieces, as a share of the body's surface, are dropped: about the size of one face of a mesh of
+    /// a million tets.
+    static constexpr double min_share = 1e-5;
+  };
+
   /// Holes and their caps.
   struct Holes {
     /// Max distance of a flat rim from its plane, in diagonals: the rounding of coordinates written with six
@@ -86,6 +96,7 @@ struct InputTuning {
   struct Messages {
     static constexpr std::size_t max_listed_labels = 30;  ///< in one message
     static constexpr std::size_t max_named_labels = 20;   ///< with a finding of their own
+    static constexpr std::size_t max_named_walls = 12;    ///< in one message
   };
 };
 

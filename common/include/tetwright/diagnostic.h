@@ -62,6 +62,7 @@ enum class DiagnosticCode : std::uint8_t {
   triangles_flat,
   edges_non_manifold,
   inner_walls_dropped,
+  walls_kept_as_sheets,
   triangles_turned,
   holes_closed,
   surface_self_intersects,
