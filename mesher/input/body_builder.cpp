@@ -147,7 +147,10 @@ std::vector<BodyBuilder::ClosedSurface> BodyBuilder::close_holes(std::vector<Mat
     s.surface.triangle_groups = {};
     for (const Vec3& p : own.cleaned.points) low = low.cwiseMin(p), high = high.cwiseMax(p);
     for (const SurfaceRegion& group : s.surface.groups) names_.insert(group.name);
-    own.walled = separate_walls(own.cleaned, s.file, nested, rule, contact_, progress_);
+    if (const auto joined = joined_.find(i); joined != joined_.end() && rule == RegionRule::cells)
+      own.walled = std::move(joined->second);
+    else
+      own.walled = separate_walls(own.cleaned, s.file, nested, rule, contact_, progress_);
     if (own.has_cells() && partitioned) own.walled.reset();
     if (own.has_cells()) continue;
     for (SurfaceHole& hole : close_flat_holes(own.cleaned, s.surface.groups, s.file, caps_, own.findings)) {
@@ -350,15 +353,15 @@ void BodyBuilder::take_walls(const InnerWalls& walls, const CleanedSurface& surf
                              std::vector<Diagnostic>& findings) {
   if (walls.kept.triangles.empty()) return;
   const std::string with_area = "inside '" + from.name + "', with an area of " + short_number(walls.area);
+  WallSheet sheet = sheet_of_walls(walls, surface, divided, from, names_);
+  std::erase_if(input_.groups, [&](const MesherInput::Group& g) {
+    return std::find(sheet.groups.begin(), sheet.groups.end(), g.group) != sheet.groups.end();
+  });
   if (rule == RegionRule::outer || !input_.layers.empty()) {
     add_finding(findings, DiagnosticCode::inner_walls_dropped, "triangles of walls " + with_area,
                 walls.kept.triangles.size(), walls.place, "left out");
     return;
   }
-  WallSheet sheet = sheet_of_walls(walls, surface, divided, from, names_);
-  std::erase_if(input_.groups, [&](const MesherInput::Group& g) {
-    return std::find(sheet.groups.begin(), sheet.groups.end(), g.group) != sheet.groups.end();
-  });
   std::set<std::string> names;
   for (const SurfaceRegion& group : sheet.sheet.surface.groups) names.insert(group.name);
   if (names.empty()) names.insert(sheet.sheet.name);
@@ -374,7 +377,8 @@ void BodyBuilder::add_bodies(std::vector<SurfaceCell> cells, const MaterialSurfa
   for (std::size_t k = 0; k < cells.size(); ++k) {
     SurfaceCell& cell = cells[k];
     cells_.insert(input_.bodies.size());
-    input_.bodies.push_back({cell_name(cell, k + 1, from, used), k == 0 ? from.tag : free_tag(), from.file,
+    std::string name = cells.size() == 1 ? from.name : cell_name(cell, k + 1, from, used);
+    input_.bodies.push_back({std::move(name), k == 0 ? from.tag : free_tag(), from.file,
                              std::move(cell.surface), groups});
   }
 }
@@ -390,8 +394,9 @@ std::string BodyBuilder::cell_name(const SurfaceCell& cell, std::size_t number, 
 
 void BodyBuilder::report_cells(const DividedSurface& divided, const InnerWalls& walls,
                                std::vector<Diagnostic>& findings) const {
-  add_finding(findings, DiagnosticCode::cells_separated, "cells between the inner walls of a surface",
-              divided.cells.size(), divided.cells[0].surface.points[0], "each a material of its own");
+  if (divided.cells.size() > 1)
+    add_finding(findings, DiagnosticCode::cells_separated, "cells between the inner walls of a surface",
+                divided.cells.size(), divided.cells[0].surface.points[0], "each a material of its own");
   add_finding(findings, DiagnosticCode::inner_walls_dropped,
               "triangles of sheets that bound no cell, with an area of " + short_number(walls.dropped_area),
               walls.dropped, walls.dropped_place, "left out");

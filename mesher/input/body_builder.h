@@ -27,6 +27,9 @@ class BodyBuilder {
               const CapOptions& caps, Progress* progress)
       : input_(input), tags_(std::move(tags)), contact_(contact), caps_(caps), progress_(progress) {}
 
+  /// Announces surfaces of which every cell becomes a body, also a single one: see join_patches().
+  void set_joined(std::map<std::size_t, WalledSurface> joined) { joined_ = std::move(joined); }
+
   /// Closes flat holes, repairs the surfaces one by one and appends each as a body, followed by its nested
   /// components; or each of its cells, if inner walls divide it. Walls with one material on both sides are
   /// taken out, see walls().
@@ -82,6 +85,7 @@ class BodyBuilder {
   std::set<std::size_t> cells_;  ///< bodies that are cells
   std::set<std::string> names_;  ///< of patches and sheets
   std::vector<SheetSurface> walls_;
+  std::map<std::size_t, WalledSurface> joined_;  ///< by surface, until it is added
   /// Partitions that divide a body, and where borders of others end inside one.
   std::set<std::uint32_t> dividing_;
   std::map<std::uint32_t, std::string> ends_;

@@ -11,6 +11,7 @@
 #include "common/message_text.h"
 #include "mesher/input/body_builder.h"
 #include "mesher/input/body_contacts.h"
+#include "mesher/input/patch_joining.h"
 #include "mesher/input/qualified_names.h"
 #include "mesher/input/self_crossings.h"
 #include "mesher/input/sheet_surfaces.h"
@@ -146,11 +147,13 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
                               Progress* progress, const SheetOptions& sheets, const CapOptions& caps) {
   if (surfaces.empty()) throw UsageError("there is no surface to mesh");
   MesherInput input;
+  std::map<std::size_t, WalledSurface> joined = join_patches(surfaces, contact, input.findings, progress);
   name_groups(surfaces, input.findings);
   input.groups = measure_groups(surfaces);
   std::set<MaterialTag> tags = tags_in_use(surfaces, layers);
   input.layers = std::move(layers);
   BodyBuilder builder(input, std::move(tags), contact, caps, progress);
+  builder.set_joined(std::move(joined));
   std::vector<Partition> partitions;
   for (const SheetSurface& s : sheets.surfaces)
     if (s.divides) partitions.push_back(make_partition(s, sheets.extend, input.findings));

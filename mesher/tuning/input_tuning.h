@@ -56,6 +56,16 @@ struct InputTuning {
     static constexpr double min_share = 1e-5;
   };
 
+  /// Open surfaces that close together.
+  struct Patches {
+    /// Share of a surface's border, by length, that must lie on others: all but what cleaning and rounding
+    /// may change.
+    static constexpr double border_share = 0.99;
+    /// Share from which it is reported that surfaces do not close: more than two bodies with holes have in
+    /// common by chance.
+    static constexpr double mentioned_share = 0.5;
+  };
+
   /// Holes and their caps.
   struct Holes {
     /// Max distance of a flat rim from its plane, in diagonals: the rounding of coordinates written with six

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Walls of zero thickness in the file of their body."""
+"""Walls of zero thickness in the file of their body, and bodies whose sides are files of their own."""
 import numpy as np
 
 import shapes as sh
 import surfaces as sf
-from case import FLAT, Case, Input, case, expectations, sheet_expectations
+from case import FLAT, Case, Input, case, expectations, of_partition, sheet_expectations
 from cases_sheets import blades
 from partition import carved
 
@@ -18,7 +18,7 @@ def duct_with(walls, suffix, doubled=False, named=True, duct=None):
     meant = {1: partition.boundary(1)}
     duct = sh.tessellated(body, 0.5) if duct is None else duct
     turned = {name: (points, triangles[:, ::-1]) for name, (points, triangles) in walls.items()}
-    parts = [("duct", duct), *walls.items(), *(turned.items() if doubled else [])]
+    parts = [("hull", duct), *walls.items(), *(turned.items() if doubled else [])]
     groups = [name if named else "all" for name, (_, triangles) in parts for _ in triangles]
     joined = sf.join([surface for _, surface in parts])
     points, number = sf.weld(joined[0], 1e-9)
@@ -27,7 +27,7 @@ def duct_with(walls, suffix, doubled=False, named=True, duct=None):
     expect = expectations(partition.topology(), meant, FLAT)
     expect["sheets"] = {name: sheet_expectations(surface, FLAT) for name, surface in judged.items()}
     inputs = [Input("duct", (points, number[joined[1]]), suffix, groups if named else None, closed=False)]
-    patches = {"duct": sf.area(*meant[1])} if named else {}
+    patches = {"hull": sf.area(*meant[1])} if named else {}
     return Case(inputs, expect, meant, judged_sheets=judged, patches=patches)
 
 
@@ -59,10 +59,53 @@ case("walls_attached_unnamed")(lambda: attached(".off", named=False))
 case("walls_attached_doubled")(lambda: attached(".obj", doubled=True))
 
 
-@case("walls_orifice")
+def patches_of(points, triangles, name="p"):
+    """Returns an input for each part of a surface that is connected across edges of two triangles."""
+    edges = np.sort(sf.half_edges(triangles), axis=1)
+    _, edge, counts = np.unique(edges, axis=0, return_inverse=True, return_counts=True)
+    owner = np.tile(np.arange(len(triangles)), 3)
+    order = np.argsort(edge.ravel(), kind="stable")
+    pairs = owner[order[counts[edge.ravel()[order]] == 2]].reshape(-1, 2)
+    count, part = sf.components(len(triangles), pairs)
+    return [Input(f"{name}{k + 1}", sf.compact(points, triangles[part == k]), closed=False) for k in range(count)]
+
+
+SIDES = ("left", "right", "front", "back", "bottom", "top")
+
+
+def sides_of(low, high, counts, without=None, prefix=""):
+    points, triangles, side = sh.gridded_box(low, high, counts)
+    return [Input(prefix + name, sf.compact(points, triangles[side == k]), closed=False)
+            for k, name in enumerate(SIDES) if name != without]
+
+
+def of_sides(inputs, *bodies):
+    """A case of open files; `front` and `back`, which a material may be called like, are not among the judged patches."""
+    partition = carved([sh.box(*body) for body in bodies])
+    patches = {i.name: sf.area(*i.surface) for i in inputs[1:]}
+    return of_partition(partition, inputs, by_position=True, patches=patches)
+
+
+case("patches_cube")(lambda: of_sides(sides_of((0, 0, 0), (1, 1, 1), 3), ((0, 0, 0), (1, 1, 1))))
+case("patches_cube_reversed")(lambda: of_sides(sides_of((0, 0, 0), (1, 1, 1), 3)[::-1], ((0, 0, 0), (1, 1, 1))))
+
+
+@case("patches_cube_other_grids")
 def _():
-    """A plate across the duct with a square opening, attached all around."""
-    duct = sh.gridded_box(LOW, HIGH, (11, 10, 12))[:2]
-    points, triangles = sh.grid((-1.1, -1, 1.2), (2.2, 0, 0), (0, 2, 0), (11, 10))
-    middle = points[triangles].mean(axis=1)
-    return duct_with({"plate": (points, triangles[(np.abs(middle[:, :2]) > 0.4 + 0.101).any(axis=1)])}, ".stl", duct=duct)
+    """Each side has a grid of its own, so that borders meet without common points."""
+    inputs = [sides_of((0, 0, 0), (1, 1, 1), 2 + k % 3)[k] for k in range(6)]
+    return of_sides(inputs, ((0, 0, 0), (1, 1, 1)))
+
+
+@case("patches_two_cubes")
+def _():
+    inputs = sides_of((0, 0, 0), (1, 1, 1), 3) + sides_of((1, 0, 0), (2, 1, 1), 3, "left", "second_")
+    return of_sides(inputs, ((0, 0, 0), (1, 1, 1)), ((1, 0, 0), (2, 1, 1)))
+
+
+@case("patches_and_body")
+def _():
+    """A closed body on one of the sides stays a body."""
+    inputs = sides_of((0, 0, 0), (1, 1, 1), 3) + [Input("upper", sh.gridded_box((0, 0, 1), (1, 1, 2), 4)[:2])]
+    partition = carved([sh.box((0, 0, 0), (1, 1, 1)), sh.box((0, 0, 1), (1, 1, 2))])
+    return of_partition(partition, inputs, by_position=True)

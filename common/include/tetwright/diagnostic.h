@@ -73,6 +73,8 @@ enum class DiagnosticCode : std::uint8_t {
   cavities_filled,
   components_separated,
   cells_separated,
+  surfaces_joined,
+  surfaces_not_joined,
   names_qualified,
   patches_joined,
   bodies_overlap,
