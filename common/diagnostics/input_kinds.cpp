@@ -152,8 +152,8 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
      .name = "surfaces-not-joined",
      .severity = Severity::note,
      .title = "open surfaces that do not close",
-     .message = "N open surfaces that meet along most of their borders, but do not close together (an edge of "
-                "'NAME' meets no other; each is treated as a body)",
+     .message = "N open surfaces that meet along most of their borders, but do not close together, as an "
+                "edge of 'NAME' meets no other (each treated as a body)",
      .cause = "A surface is missing, or a gap is wider than the contact tolerance.",
      .remedy = "Add the surface that is missing, or use a larger `--contact-tolerance`."},
     {.code = names_qualified,

@@ -12,11 +12,11 @@
 #include "common/message_text.h"
 #include "mesher/complex/labelled_complex.h"
 #include "mesher/input/body_contacts.h"
+#include "mesher/input/connected_patches.h"
 #include "mesher/input/surface_cleaning.h"
 #include "mesher/input/surface_components.h"
 #include "mesher/input/surface_holes.h"
 #include "mesher/input/surface_measures.h"
-#include "mesher/input/connected_patches.h"
 #include "mesher/tuning/input_tuning.h"
 #include "tetwright/error.h"
 
@@ -365,9 +365,13 @@ void BodyBuilder::take_walls(const InnerWalls& walls, const CleanedSurface& surf
   std::set<std::string> names;
   for (const SurfaceRegion& group : sheet.sheet.surface.groups) names.insert(group.name);
   if (names.empty()) names.insert(sheet.sheet.name);
-  add_finding(findings, DiagnosticCode::walls_kept_as_sheets, "walls of zero thickness " + with_area,
-              walls.pieces, walls.place,
-              "kept as the sheet" + std::string(names.size() > 1 ? "s" : "") + listed(names));
+  const bool single = walls.pieces == 1;
+  findings.push_back(
+      {.code = DiagnosticCode::walls_kept_as_sheets,
+       .what = (single ? "a wall of zero thickness " : "walls of zero thickness ") + with_area,
+       .count = single ? 0 : walls.pieces,
+       .done = (names.size() == 1 ? "kept as the sheet" : "kept as the sheets") + listed(names),
+       .places = {walls.place}});
   walls_.push_back(std::move(sheet.sheet));
 }
 
@@ -378,8 +382,8 @@ void BodyBuilder::add_bodies(std::vector<SurfaceCell> cells, const MaterialSurfa
     SurfaceCell& cell = cells[k];
     cells_.insert(input_.bodies.size());
     std::string name = cells.size() == 1 ? from.name : cell_name(cell, k + 1, from, used);
-    input_.bodies.push_back({std::move(name), k == 0 ? from.tag : free_tag(), from.file,
-                             std::move(cell.surface), groups});
+    input_.bodies.push_back(
+        {std::move(name), k == 0 ? from.tag : free_tag(), from.file, std::move(cell.surface), groups});
   }
 }
 

@@ -26,11 +26,12 @@ void for_each_edge(std::span<const EdgeUse> uses, Body&& body) {
 
 /// Marks patches with a free edge, and repeats this without those that have one.
 void mark_open(std::span<const EdgeUse> uses, ConnectedPatches& patches) {
-  std::vector<std::vector<Index>> patches_at;              // of each edge of other than two triangles
+  std::vector<std::vector<Index>> patches_at;               // of each edge of other than two triangles
   std::vector<std::vector<Index>> edges_of(patches.count);  // with repetitions
   for_each_edge(uses, [&](std::span<const EdgeUse> edge) {
     if (edge.size() == 2) return;
-    for (const EdgeUse& use : edge) edges_of[patches.of[use.triangle]].push_back(static_cast<Index>(patches_at.size()));
+    for (const EdgeUse& use : edge)
+      edges_of[patches.of[use.triangle]].push_back(static_cast<Index>(patches_at.size()));
     patches_at.emplace_back();
     for (const EdgeUse& use : edge) patches_at.back().push_back(patches.of[use.triangle]);
   });
@@ -56,7 +57,7 @@ bool ConnectedPatches::any_open() const {
 }
 
 bool ConnectedPatches::open_within_closed(std::span<const Vec3> points,
-                                        std::span<const Triangle> triangles) const {
+                                          std::span<const Triangle> triangles) const {
   Eigen::AlignedBox3d box;
   for (std::size_t t = 0; t < triangles.size(); ++t)
     if (!open[of[t]])

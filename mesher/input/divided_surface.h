@@ -48,8 +48,9 @@ struct DividedSurface {
   double outside_sheet_area = 0;  ///< the part with the outside on both sides
   std::optional<Vec3> sheet;      ///< the centre of the largest one
   std::vector<WallTriangle> sheets;
-  std::vector<char> bounds;  ///< by triangle of the surface: 1 if a part of it bounds a cell, also one that was dissolved
-  std::vector<char> between;  ///< likewise: 1 if a part of it is between two cells
+  std::vector<char>
+      bounds;  ///< by triangle of the surface: 1 if a part of it bounds a cell, also one that was dissolved
+  std::vector<char> between;           ///< likewise: 1 if a part of it is between two cells
   std::vector<WallTriangle> repeated;  ///< left out, since an earlier triangle has the same corners
   std::size_t dissolved_cells = 0;     ///< too small or thin, joined with a neighbour
   std::optional<Vec3> dissolved;       ///< on the boundary of one

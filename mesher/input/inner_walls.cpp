@@ -168,9 +168,7 @@ WallSheet sheet_of_walls(const InnerWalls& walls, const CleanedSurface& surface,
     }
     g = known->second;
   }
-  result.sheet.name = mesh.groups.size() == 1 ? mesh.groups[0].name
-                      : unnamed.empty()       ? free_name()
-                                              : unnamed;
+  result.sheet.name = mesh.groups.size() == 1 ? mesh.groups[0].name : unnamed.empty() ? free_name() : unnamed;
   return result;
 }
 

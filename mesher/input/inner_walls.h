@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "mesher/input/connected_patches.h"
 #include "mesher/input/divided_surface.h"
 #include "mesher/input/surface_cleaning.h"
-#include "mesher/input/connected_patches.h"
 #include "tetwright/mesher_input.h"
 
 namespace tetwright {
@@ -21,8 +21,8 @@ struct InnerWalls {
   /// The walls that are kept; groups are those of the surface. Whole patches as they are, and parts of others
   /// as they were cut.
   TriangleMesh kept;
-  std::size_t pieces = 0;  ///< of those kept, connected by points
-  double area = 0;         ///< likewise, input units squared
+  std::size_t pieces = 0;     ///< of those kept, connected by points
+  double area = 0;            ///< likewise, input units squared
   Vec3 place = Vec3::Zero();  ///< the centre of the largest triangle
   /// Triangles that bound no cell and are not kept: outside, or of pieces that are too small.
   std::size_t dropped = 0;

@@ -30,7 +30,7 @@ using Tuning = InputTuning::Patches;
 /// An edge of one triangle only.
 struct FreeEdge {
   double length;
-  std::array<Vec3, 3> places;              ///< both ends and the middle
+  std::array<Vec3, 3> places;               ///< both ends and the middle
   std::array<std::set<std::size_t>, 3> at;  ///< the other open surfaces at each of these
 };
 
@@ -161,7 +161,8 @@ class PatchJoiner {
       if (set[k]) parts[sets.root(k)].push_back(k);
     std::vector<std::vector<Index>> result;
     for (auto& [root, part] : parts) {
-      std::stable_sort(part.begin(), part.end(), [&](Index a, Index b) { return open_[a].key() < open_[b].key(); });
+      std::stable_sort(part.begin(), part.end(),
+                       [&](Index a, Index b) { return open_[a].key() < open_[b].key(); });
       if (part.size() > 1) result.push_back(std::move(part));
     }
     return result;
@@ -245,10 +246,10 @@ class PatchJoiner {
     findings_.push_back(
         {.code = DiagnosticCode::surfaces_not_joined,
          .file = from.file,
-         .what = "open surfaces that meet along most of their borders, but do not close together",
+         .what = "open surfaces that meet along most of their borders, but do not close together" +
+                 (longest ? ", as an edge of '" + from.name + "' meets no other" : std::string()),
          .count = set.size(),
-         .done = (longest ? "an edge of '" + from.name + "' meets no other" : "they enclose nothing") +
-                 std::string("; each is treated as a body"),
+         .done = "each treated as a body",
          .places = {longest ? longest->places[2] : open_[owner].cleaned.points[0]}});
   }
 

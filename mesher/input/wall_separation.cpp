@@ -64,8 +64,8 @@ bool take_walls_out(CleanedSurface& surface, const CleanedSurface& all, const st
 }  // namespace
 
 std::optional<WalledSurface> separate_walls(CleanedSurface& surface, const std::string& file,
-                                            NestedRule nested, RegionRule rule,
-                                            const ContactOptions& contact, Progress* progress) {
+                                            NestedRule nested, RegionRule rule, const ContactOptions& contact,
+                                            Progress* progress) {
   const bool odd = may_have_inner_walls(surface);
   if (!odd && !has_free_edges(surface.triangles)) return {};
   const double diagonal = box_diagonal(surface.points);

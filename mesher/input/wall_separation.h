@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "mesher/input/connected_patches.h"
 #include "mesher/input/divided_surface.h"
 #include "mesher/input/inner_walls.h"
 #include "mesher/input/surface_cleaning.h"
-#include "mesher/input/connected_patches.h"
 #include "tetwright/mesher_input.h"
 #include "tetwright/progress.h"
 
@@ -38,8 +38,8 @@ struct WalledSurface {
 /// \throws InputError as repair_surface() does
 /// \throws Interrupted
 std::optional<WalledSurface> separate_walls(CleanedSurface& surface, const std::string& file,
-                                            NestedRule nested, RegionRule rule,
-                                            const ContactOptions& contact, Progress* progress);
+                                            NestedRule nested, RegionRule rule, const ContactOptions& contact,
+                                            Progress* progress);
 
 /// Finds the walls inside solids, see find_inner_walls().
 /// \param solids closed and oriented outwards
