@@ -30,7 +30,7 @@ class WallPieces {
   }
 
   /// Moves pieces of at least some area to the walls.
-  void take(double least_area, bool grouped, InnerWalls& walls) {
+  void take(double min_area, bool grouped, InnerWalls& walls) {
     DisjointSets sets(points_.size());
     for (const auto& [a, b, c] : triangles_) {
       sets.unite(a, b);
@@ -38,10 +38,10 @@ class WallPieces {
     }
     std::vector<double> areas(points_.size(), 0);
     for (const Triangle& t : triangles_) areas[sets.root(t[0])] += area(t);
-    for (const double a : areas) walls.pieces += a > 0 && a >= least_area;
+    for (const double a : areas) walls.pieces += a > 0 && a >= min_area;
     double largest = -1;
     for (std::size_t t = 0; t < triangles_.size(); ++t) {
-      if (areas[sets.root(triangles_[t][0])] < least_area) {
+      if (areas[sets.root(triangles_[t][0])] < min_area) {
         walls.drop(area(triangles_[t]), centre(triangles_[t]));
         continue;
       }
@@ -97,7 +97,7 @@ void InnerWalls::drop(double size, const Vec3& centre) {
 
 InnerWalls find_inner_walls(const CleanedSurface& surface, const ConnectedPatches& patches,
                             const DividedSurface& divided, const std::function<bool(const Vec3&)>& inside,
-                            double least_area) {
+                            double min_area) {
   InnerWalls walls;
   std::map<Index, bool> in_body = inside_cells(divided, inside);
   std::vector<char> bounds(patches.count, 0);
@@ -120,7 +120,7 @@ InnerWalls find_inner_walls(const CleanedSurface& surface, const ConnectedPatche
     else
       walls.drop(w.area(), w.centre());
   }
-  pieces.take(least_area, grouped, walls);
+  pieces.take(min_area, grouped, walls);
   return walls;
 }
 

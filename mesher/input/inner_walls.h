@@ -36,10 +36,10 @@ struct InnerWalls {
 /// Finds the walls of a surface.
 /// \param divided the surface, divided
 /// \param inside whether a point off the surfaces of bodies is inside one
-/// \param least_area smaller pieces are dropped, input units squared
+/// \param min_area smaller pieces are dropped, input units squared
 InnerWalls find_inner_walls(const CleanedSurface& surface, const ConnectedPatches& patches,
                             const DividedSurface& divided, const std::function<bool(const Vec3&)>& inside,
-                            double least_area);
+                            double min_area);
 
 /// The surface without some of its patches.
 CleanedSurface without_patches(const CleanedSurface& surface, const ConnectedPatches& patches,

@@ -14,7 +14,7 @@ namespace tetwright {
 /// Joins open surfaces that close together, such as the sides of a body in files of their own.
 ///
 /// A surface takes part if nearly all of its border lies on other open surfaces within the contact tolerance.
-/// Those that are connected by this become one surface, if it then has cells and no border. It has the name,
+/// Connected sets of them become one surface each, if it then has cells and no border. It has the name,
 /// tag, file and position of the first of them; its groups are called like the surfaces. Surfaces that are
 /// closed by flat caps alone are bodies, unless others that take part are not. Surfaces that meet along most
 /// of their border, but do not close, are reported and left as they are.

@@ -80,7 +80,7 @@ def sides_of(low, high, counts, without=None, prefix=""):
 
 
 def of_sides(inputs, *bodies):
-    """A case of open files; `front` and `back`, which a material may be called like, are not among the judged patches."""
+    """A case of open files; the first one, like which a material may be called, is not among the judged patches."""
     partition = carved([sh.box(*body) for body in bodies])
     patches = {i.name: sf.area(*i.surface) for i in inputs[1:]}
     return of_partition(partition, inputs, by_position=True, patches=patches)

@@ -289,7 +289,7 @@ enum class SurfaceFlaw : std::uint8_t {
 /// nowhere else, or NAME_sheet; with RegionRule::outer, or with layers, they are left out.
 ///
 /// Open surfaces whose borders lie on each other within the contact tolerance, and that close together,
-/// become one with such cells, in the place of the first of them. Its groups are called like the surfaces. A
+/// become one with such cells, instead of the first of them. Its groups are called like the surfaces. A
 /// single cell is called like the first of them.
 ///
 /// Flat holes are closed first, see CapOptions. Caps are called cap_1, cap_2 and so on by size, largest
