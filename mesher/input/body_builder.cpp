@@ -174,8 +174,13 @@ void BodyBuilder::add(std::vector<MaterialSurface> surfaces, NestedRule nested, 
     MaterialSurface& s = surfaces[i];
     std::vector<Diagnostic>& findings = closed[i].findings;
     const std::vector<SurfaceRegion> groups = s.surface.groups;
-    if (const std::optional<WalledSurface>& walled = closed[i].walled; walled && walled->walls)
+    if (const std::optional<WalledSurface>& walled = closed[i].walled; walled && walled->walls) {
       take_walls(*walled->walls, *walled->given, walled->divided, s, rule, findings);
+      add_finding(findings, DiagnosticCode::inner_walls_dropped,
+                  "triangles of walls that are tiny or lie on others, with an area of " +
+                      short_number(walled->walls->dropped_area),
+                  walled->walls->dropped, walled->walls->dropped_place, "left out");
+    }
     if (!add_layers(closed[i].cleaned, s, nested, partitions, findings) &&
         (rule == RegionRule::outer || !add_cells(closed[i], s, nested))) {
       SurfaceRepair repaired =

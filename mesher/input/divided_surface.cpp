@@ -49,6 +49,7 @@ class SurfaceDivider {
     measure_cells();
     dissolve_small_cells();
     find_sheets();
+    compare_repeated();
     add_cells();
     order_cells();
     return std::move(result_);
@@ -86,9 +87,12 @@ class SurfaceDivider {
       return false;
     }
     points_ = std::move(imprinted.points);
-    std::set<Triangle> known;
+    std::map<Triangle, Index> known;
     for (std::size_t i = 0; i < imprinted.triangles.size(); ++i) {
-      if (const Triangle& t = imprinted.triangles[i]; !known.insert(sorted(t)).second) {
+      const Triangle& t = imprinted.triangles[i];
+      const auto [first, added] = known.try_emplace(sorted(t), static_cast<Index>(triangles_.size()));
+      if (!added) {
+        first_of_repeated_.push_back(first->second);
         result_.repeated.push_back(
             {{points_[t[0]], points_[t[1]], points_[t[2]]}, origin[imprinted.source[i]], false, false});
         continue;
@@ -211,6 +215,17 @@ class SurfaceDivider {
     }
   }
 
+  /// Repeated triangles bound what the first ones with the same corners do.
+  void compare_repeated() {
+    for (std::size_t i = 0; i < result_.repeated.size(); ++i) {
+      WallTriangle& own = result_.repeated[i];
+      const auto [behind, front] = cells_.sides[first_of_repeated_[i]];
+      own.cell = behind;
+      own.at_cell = behind != front;
+      own.outside = label(behind) == label(outside_);
+    }
+  }
+
   /// One surface for each bounded cell.
   void add_cells() {
     std::map<Index, std::vector<Index>> faces;  // by label
@@ -308,6 +323,7 @@ class SurfaceDivider {
   std::vector<Vec3> points_;
   std::vector<Triangle> triangles_;
   std::vector<Index> source_;  ///< of each triangle: that of the surface
+  std::vector<Index> first_of_repeated_;
   SurfaceCells cells_;
   Index outside_ = 0;                   ///< a number of labels_ after those of the cells
   std::optional<DisjointSets> labels_;  ///< cells that are joined

@@ -29,7 +29,7 @@ struct WallTriangle {
   bool outside;    ///< not in a cell
   bool at_border;  ///< has an edge that no other triangle has
   Index cell = 0;  ///< equal numbers are in the same part of space; parts around pieces of the surface differ
-  bool dissolved = false;  ///< bounded a cell that was dissolved
+  bool at_cell = false;  ///< bounds a cell: one that was dissolved, or if it is there twice
 
   double area() const { return (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() / 2; }
   Vec3 centre() const { return (corners[0] + corners[1] + corners[2]) / 3; }

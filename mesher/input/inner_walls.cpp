@@ -73,7 +73,7 @@ std::map<Index, bool> inside_cells(const DividedSurface& divided,
   std::map<Index, const WallTriangle*> largest;
   for (const WallTriangle& w : divided.sheets) {
     const WallTriangle*& known = largest[w.cell];
-    if (!w.dissolved && (!known || w.area() > known->area())) known = &w;
+    if (!w.at_cell && (!known || w.area() > known->area())) known = &w;
   }
   std::map<Index, bool> result;
   for (const auto& [cell, w] : largest) result[cell] = w && inside(w->centre());
@@ -102,24 +102,32 @@ InnerWalls find_inner_walls(const CleanedSurface& surface, const ConnectedPatche
   std::map<Index, bool> in_body = inside_cells(divided, inside);
   std::vector<char> bounds(patches.count, 0);
   for (Index t = 0; t < surface.triangles.size(); ++t) bounds[patches.of[t]] |= divided.bounds[t];
-  std::vector<double> area_inside(patches.count, 0);
+  std::vector<double> area_inside(patches.count, 0), area_on_others(patches.count, 0);
+  const auto is_inside = [&](const WallTriangle& w) { return !w.at_cell && in_body.at(w.cell); };
   for (const WallTriangle& w : divided.sheets)
-    if (!w.dissolved && in_body.at(w.cell)) area_inside[patches.of[w.source]] += w.area();
+    if (is_inside(w)) area_inside[patches.of[w.source]] += w.area();
+  for (const WallTriangle& w : divided.repeated)
+    if (is_inside(w)) area_on_others[patches.of[w.source]] += w.area();
   for (Index p = 0; p < patches.count; ++p)
-    walls.whole.push_back(!bounds[p] && area_inside[p] >= InputTuning::Walls::inside_share * patches.area[p]);
+    walls.whole.push_back(!bounds[p] && area_inside[p] + area_on_others[p] >=
+                                            InputTuning::Walls::inside_share * patches.area[p]);
   const bool grouped = !surface.groups.empty();
   const auto group = [&](Index t) { return grouped ? surface.groups[t] : 0; };
   WallPieces pieces;
   for (Index t = 0; t < surface.triangles.size(); ++t)
-    if (walls.whole[patches.of[t]]) pieces.add(corners_of(surface, t), group(t));
+    if (const Index p = patches.of[t]; walls.whole[p] && area_inside[p] >= area_on_others[p])
+      pieces.add(corners_of(surface, t), group(t));
   for (const WallTriangle& w : divided.sheets) {
     const Index p = patches.of[w.source];
     if (walls.whole[p]) continue;
-    if (bounds[p] && !w.dissolved && in_body.at(w.cell))
+    if (bounds[p] && is_inside(w))
       pieces.add(w.corners, group(w.source));
     else
       walls.drop(w.area(), w.centre());
   }
+  for (const WallTriangle& w : divided.repeated)
+    if (const Index p = patches.of[w.source]; walls.whole[p] && area_inside[p] < area_on_others[p])
+      walls.drop(w.area(), w.centre());
   pieces.take(min_area, grouped, walls);
   return walls;
 }

@@ -24,7 +24,7 @@ struct InnerWalls {
   std::size_t pieces = 0;     ///< of those kept, connected by points
   double area = 0;            ///< likewise, input units squared
   Vec3 place = Vec3::Zero();  ///< the centre of the largest triangle
-  /// Triangles that bound no cell and are not kept: outside, or of pieces that are too small.
+  /// Triangles that bound no cell and are not kept: outside, of pieces that are too small, or on others.
   std::size_t dropped = 0;
   double dropped_area = 0;
   std::optional<Vec3> dropped_place;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -66,8 +67,6 @@ void expect_sheet(const MesherInput& input, double area, const std::string& name
 /// Bodies and findings as if walls were not looked for: the cleaned surface is repaired as one.
 void expect_repaired(const TriangleMesh& mesh, NestedRule nested = NestedRule::automatic) {
   const MesherInput input = input_of(mesh, {}, nested);
-  CapOptions caps;
-  caps.close_flat = true;
   const SurfaceRepair repaired = repair_surface(mesh, "rock.off", nested);
   EXPECT_TRUE(input.sheets.empty());
   EXPECT_EQ(said(input, DiagnosticCode::walls_kept_as_sheets), "");
@@ -90,9 +89,32 @@ TEST(InnerWalls, ListedFromBothSidesAreKeptOnce) {
   expect_sheet(input_of(joined(box(), joined(baffle(), turned_over(baffle())))), baffle_area);
 }
 
+TEST(InnerWalls, OnEachOtherAreKeptOnce) {
+  // The second one has points between the corners on each side, so that no edge is common.
+  TriangleMesh other = square({0.5, 0.25, 0.25}, {0.25, 0, 0}, {0, 0.25, 0.25});
+  for (const Vec3& shift : {Vec3(0.25, 0, 0), Vec3(0, 0.25, 0.25), Vec3(0.25, 0.25, 0.25)})
+    other = joined(other, square(Vec3(0.5, 0.25, 0.25) + shift, {0.25, 0, 0}, {0, 0.25, 0.25}));
+  const MesherInput input = input_of(joined(box(), joined(baffle(), other)));
+  expect_sheet(input, baffle_area);
+  EXPECT_NE(said(input, DiagnosticCode::inner_walls_dropped), "");
+}
+
+TEST(InnerWalls, AcrossTheTubeOfATorusAreKept) {
+  const TriangleMesh torus = make_torus(1, 0.3);
+  std::vector<Index> ring;
+  for (Index p = 0; p < torus.points.size(); ++p)
+    if (std::abs(torus.points[p].y()) < 1e-9 && torus.points[p].x() > 0) ring.push_back(p);
+  const auto angle = [&](Index p) { return std::atan2(torus.points[p].z(), torus.points[p].x() - 1); };
+  std::sort(ring.begin(), ring.end(), [&](Index a, Index b) { return angle(a) < angle(b); });
+  TriangleMesh mesh = torus;
+  for (std::size_t k = 1; k + 1 < ring.size(); ++k) mesh.triangles.push_back({ring[0], ring[k], ring[k + 1]});
+  const MesherInput input = input_of(mesh);
+  EXPECT_EQ(sheet_names(input), std::vector<std::string>{"rock_sheet"});
+  EXPECT_NEAR(sheet_area(input), 3.1058 * 0.09, 1e-4);  // of a polygon with 24 corners
+}
+
 TEST(InnerWalls, AttachedByEdgesOfThreeTrianglesAreKept) {
-  // From the edge of the box along the diagonal of a side.
-  TriangleMesh mesh = box();
+  // From an edge of the box into its inside.
   for (const bool doubled : {false, true}) {
     const TriangleMesh fin{.points = {{0, 0, 0}, {0, 0, 1}, {0.7, 0.5, 0.5}}, .triangles = {{0, 1, 2}}};
     const MesherInput input = input_of(joined(box(), doubled ? joined(fin, turned_over(fin)) : fin));
