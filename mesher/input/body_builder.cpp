@@ -147,8 +147,11 @@ std::vector<BodyBuilder::ClosedSurface> BodyBuilder::close_holes(std::vector<Mat
     s.surface.triangle_groups = {};
     for (const Vec3& p : own.cleaned.points) low = low.cwiseMin(p), high = high.cwiseMax(p);
     for (const SurfaceRegion& group : s.surface.groups) names_.insert(group.name);
-    if (const auto joined = joined_.find(i); joined != joined_.end() && rule == RegionRule::cells)
+    const auto joined = joined_.find(i);
+    if (joined != joined_.end() && rule == RegionRule::cells)
       own.walled = std::move(joined->second);
+    else if (joined != joined_.end())
+      own.cleaned = outline_of(joined->second.divided);
     else
       own.walled = separate_walls(own.cleaned, s.file, nested, rule, contact_, progress_);
     if (own.has_cells() && partitioned) own.walled.reset();

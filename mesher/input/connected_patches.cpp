@@ -65,9 +65,10 @@ bool ConnectedPatches::open_within_closed(std::span<const Vec3> points,
   if (box.isEmpty()) return false;
   std::vector<double> within(count, 0);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const auto& [a, b, c] = triangles[t];
-    if (open[of[t]] && box.contains(Vec3((points[a] + points[b] + points[c]) / 3)))
-      within[of[t]] += triangle_area(points, triangles[t]);
+    if (!open[of[t]]) continue;
+    Eigen::AlignedBox3d own;
+    for (const Index p : triangles[t]) own.extend(points[p]);
+    if (box.intersects(own)) within[of[t]] += triangle_area(points, triangles[t]);
   }
   for (Index p = 0; p < count; ++p)
     if (open[p] && within[p] < InputTuning::Walls::inside_share * area[p]) return false;

@@ -17,7 +17,8 @@ struct ConnectedPatches {
   std::vector<double> area;  ///< by patch, input units squared
 
   bool any_open() const;
-  /// True if some patches are closed together, and most of each open patch is in the bounding box of these.
+  /// True if some patches are closed together, and of each open patch a part of at least
+  /// InputTuning::Walls::inside_share may be inside: its triangles reach into the bounding box of these.
   bool open_within_closed(std::span<const Vec3> points, std::span<const Triangle> triangles) const;
 };
 

@@ -342,6 +342,39 @@ bool DividedSurface::has_inner_walls() const {
   return walled && outside_sheet_area <= area;
 }
 
+CleanedSurface outline_of(const DividedSurface& divided) {
+  CleanedSurface all;
+  std::map<std::array<double, 3>, Index> numbers;
+  std::map<Triangle, std::size_t> sides;  // number of cells at each triangle
+  for (const SurfaceCell& cell : divided.cells) {
+    for (Triangle t : cell.surface.triangles) {
+      for (Index& p : t) {
+        const Vec3& point = cell.surface.points[p];
+        const auto [known, added] =
+            numbers.try_emplace({point.x(), point.y(), point.z()}, static_cast<Index>(all.points.size()));
+        if (added) all.points.push_back(point);
+        p = known->second;
+      }
+      all.triangles.push_back(t);
+      ++sides[sorted(t)];
+    }
+    all.groups.insert(all.groups.end(), cell.surface.groups.begin(), cell.surface.groups.end());
+  }
+  std::vector<Triangle> outer;
+  std::vector<std::uint32_t> groups;
+  for (Index t = 0; t < all.triangles.size(); ++t) {
+    if (sides.at(sorted(all.triangles[t])) > 1) continue;
+    outer.push_back(all.triangles[t]);
+    if (!all.groups.empty()) groups.push_back(all.groups[t]);
+  }
+  all.triangles = std::move(outer);
+  all.groups = std::move(groups);
+  all.points = keep_used(all.points, all.triangles);
+  all.two_sided.assign(all.triangles.size(), 0);
+  all.even.assign(all.triangles.size(), 0);
+  return all;
+}
+
 bool may_have_inner_walls(const CleanedSurface& surface) {
   bool found = false;
   for_each_edge(surface.triangles, [&](std::span<const EdgeUse> edge) {

@@ -62,6 +62,10 @@ struct DividedSurface {
   bool has_inner_walls() const;
 };
 
+/// The surface between the cells and the outside, as it was cut.
+/// \param divided has cells
+CleanedSurface outline_of(const DividedSurface& divided);
+
 /// True if sheets are joined at edges of an odd number of three or more triangles. Closed shells that touch
 /// have an even number at each edge. A triangle that the file lists twice counts twice.
 bool may_have_inner_walls(const CleanedSurface& surface);

@@ -17,7 +17,7 @@ namespace tetwright {
 
 /// Walls of zero thickness inside a body that are part of its surface: one material is on both sides.
 struct InnerWalls {
-  std::vector<char> whole;  ///< by patch: bounds no cell, and most of it is inside
+  std::vector<char> whole;  ///< by patch: bounds no cell, and enough of it is inside
   /// The walls that are kept; groups are those of the surface. Whole patches as they are, and parts of others
   /// as they were cut.
   TriangleMesh kept;

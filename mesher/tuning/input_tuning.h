@@ -48,9 +48,9 @@ struct InputTuning {
 
   /// Walls of zero thickness that are part of a body's surface.
   struct Walls {
-    /// Share of a patch that must be inside the body: a wall may reach beyond it, a loose piece beside it is
-    /// none.
-    static constexpr double inside_share = 0.5;
+    /// Share of a patch that must be inside the body: a plate may reach far beyond it, while a loose piece
+    /// that only touches it is no wall.
+    static constexpr double inside_share = 0.1;
     /// Smaller pieces, as a share of the body's surface, are dropped: about the size of one face of a mesh of
     /// a million tets.
     static constexpr double min_share = 1e-5;

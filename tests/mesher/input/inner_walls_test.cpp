@@ -144,7 +144,7 @@ TEST(InnerWalls, AttachedAllAroundButOpenInTheMiddleAreKept) {
 }
 
 TEST(InnerWalls, ReachingOutsideAreCutOff) {
-  const MesherInput input = input_of(joined(box(), square({1.5, 0.25, 0.5}, {0.8, 0, 0}, {0, 0.5, 0})));
+  const MesherInput input = input_of(joined(box(), square({1.5, 0.25, 0.5}, {2, 0, 0}, {0, 0.5, 0})));
   expect_sheet(input, 0.25);
   EXPECT_NE(said(input, DiagnosticCode::sheet_cut_off), "");
 }

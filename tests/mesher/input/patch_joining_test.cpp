@@ -114,6 +114,17 @@ TEST(PatchJoining, GapsWithinTheToleranceAreClosed) {
   }
 }
 
+TEST(PatchJoining, TheOutlineAloneIfAsked) {
+  std::vector<MaterialSurface> surfaces = cube();
+  add_sides({1, 0, 0}, {3, 1, 1}, surfaces, 0);
+  for (Vec3& p : surfaces[5].surface.points) p.z() += 1e-6;
+  const MesherInput input = input_of(surfaces, {RegionRule::outer});
+  ASSERT_EQ(input.bodies.size(), 1U);
+  EXPECT_EQ(input.bodies[0].name, "p1");
+  EXPECT_NEAR(input.bodies[0].surface.volume, 3, 1e-5);
+  EXPECT_EQ(input.bodies[0].surface.closed, input.bodies[0].surface.triangles.size());
+}
+
 TEST(PatchJoining, AMissingSideIsReported) {
   const MesherInput input = input_of(cube(5));
   EXPECT_EQ(input.bodies.size(), 5U);
