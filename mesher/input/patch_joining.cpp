@@ -111,14 +111,15 @@ class PatchJoiner {
     if (!std::isfinite(diagonal)) return;
     const double tolerance = contact_tolerance(contact_, diagonal);
     for (std::size_t k = 0; k < open_.size(); ++k) {
-      const SurfaceTree tree(open_[k].cleaned.points, open_[k].cleaned.triangles);
+      std::optional<SurfaceTree> tree;  // built if a border is near
       for (std::size_t i = 0; i < open_.size(); ++i) {
         if (i == k) continue;
         for (FreeEdge& edge : open_[i].border)
-          for (std::size_t p = 0; p < 3; ++p)
-            if (open_[k].box.squaredExteriorDistance(edge.places[p]) <= tolerance * tolerance &&
-                tree.distance(edge.places[p], 2 * tolerance) <= tolerance)
-              edge.at[p].insert(k);
+          for (std::size_t p = 0; p < 3; ++p) {
+            if (open_[k].box.squaredExteriorDistance(edge.places[p]) > tolerance * tolerance) continue;
+            if (!tree) tree.emplace(open_[k].cleaned.points, open_[k].cleaned.triangles);
+            if (tree->distance(edge.places[p], 2 * tolerance) <= tolerance) edge.at[p].insert(k);
+          }
       }
       if (progress_) progress_->throw_if_stopped();
     }
