@@ -59,6 +59,22 @@ case("walls_attached_unnamed")(lambda: attached(".off", named=False))
 case("walls_attached_doubled")(lambda: attached(".obj", doubled=True))
 
 
+@case("walls_in_cells")
+def _():
+    """Fins in one of two cells of a file without names."""
+    duct, walls = fins()
+    low, high = (LOW[0], LOW[1], HIGH[2]), (HIGH[0], HIGH[1], 4)
+    upper, triangles, side = sh.gridded_box(low, high, (11, 10, 8))
+    partition = carved([sh.box(LOW, HIGH), sh.box(low, high)])
+    points, all_triangles = sf.join([duct, (upper, triangles[side != 4]), *walls.values()])
+    points, number = sf.weld(points, 1e-9)
+    sheets = sf.join(list(walls.values()))
+    made = of_partition(partition, [Input("duct", (points, number[all_triangles]), closed=False)], by_position=True,
+                        judged_sheets={"duct_sheet": sheets})
+    made.expect["sheets"] = {"duct_sheet": sheet_expectations(sheets, FLAT)}
+    return made
+
+
 def patches_of(points, triangles, name="p"):
     """Returns an input for each part of a surface that is connected across edges of two triangles."""
     edges = np.sort(sf.half_edges(triangles), axis=1)
