@@ -46,23 +46,33 @@ bool is_flat(const RepairedSurface& surface) {
   });
 }
 
+/// Why open surfaces did not become one, to be appended to an error; empty if there are none.
+std::string gap_text(const MesherInput& input) {
+  for (const Diagnostic& f : input.findings)
+    if (f.code == DiagnosticCode::surfaces_not_joined)
+      return "; " + std::to_string(f.count) + " " + f.what + ", at " + place_text(f.places[0]);
+  return "";
+}
+
 /// Throws InputError if a surface that vanished from the mesh is flat or not closed.
-void validate_encloses(const MesherInput::Body& body) {
+void validate_encloses(const MesherInput& input, const MesherInput::Body& body) {
   if (is_flat(body.surface))
-    throw InputError(body.file, 0,
-                     "the surface lies in a plane and encloses nothing; give the surface of a solid");
+    throw InputError(
+        body.file, 0,
+        "the surface lies in a plane and encloses nothing; give the surface of a solid" + gap_text(input));
   if (body.surface.closed < body.surface.triangles.size())
     throw InputError(
         body.file, 0,
         "the surface is not closed and encloses nothing that cells of this size can resolve; close "
-        "its holes, or use a higher resolution if it is closed but for small ones");
+        "its holes, or use a higher resolution if it is closed but for small ones" +
+            gap_text(input));
 }
 
 /// Throws an error that names the vanished material and a remedy.
 void validate_materials_left(const MesherInput& input, const MaterialField& field,
                              const std::vector<std::uint8_t>& there) {
   if (std::count(there.begin() + 1, there.end(), 1) == 0) {
-    validate_encloses(input.bodies[0]);
+    validate_encloses(input, input.bodies[0]);
     throw NothingToMeshError(
         input.bodies[0].file +
         ": the surface is smaller than a cell; use a higher resolution or a smaller voxel size");
@@ -82,7 +92,7 @@ void validate_materials_left(const MesherInput& input, const MaterialField& fiel
       throw InputError(body->file, 0,
                        "nothing is left of '" + region.name +
                            "' inside its layers; make the layers thinner or use a higher resolution");
-    validate_encloses(*body);
+    validate_encloses(input, *body);
     throw InputError(
         body->file, 0,
         "nothing is left of the material '" + region.name +
@@ -217,7 +227,7 @@ class SurfaceMeshing {
     report_.cell_size = cell_size(input_, options_);
     if (options_.keep_outside) validate_outside_is_free(input_);
     if (longest_side(input_) < report_.cell_size) {
-      validate_encloses(input_.bodies[0]);
+      validate_encloses(input_, input_.bodies[0]);
       throw NothingToMeshError(
           input_.bodies[0].file +
           ": the surface is smaller than a cell; use a higher resolution or a smaller voxel size");

@@ -12,6 +12,7 @@
 #include "common/message_text.h"
 #include "mesher/complex/labelled_complex.h"
 #include "mesher/input/body_contacts.h"
+#include "mesher/input/connected_patches.h"
 #include "mesher/input/surface_cleaning.h"
 #include "mesher/input/surface_components.h"
 #include "mesher/input/surface_holes.h"
@@ -111,6 +112,17 @@ void order_from_top(std::vector<SurfaceCell>& cells) {
   cells = std::move(sorted);
 }
 
+/// Names in quotes, of many the first ones.
+std::string listed(const std::set<std::string>& names) {
+  std::string text;
+  std::size_t count = 0;
+  for (const std::string& name : names) {
+    if (count == InputTuning::Messages::max_named_walls) return text + " and more";
+    text += (count++ == 0 ? " '" : ", '") + name + "'";
+  }
+  return text;
+}
+
 }  // namespace
 
 MaterialTag BodyBuilder::free_tag() {
@@ -118,10 +130,11 @@ MaterialTag BodyBuilder::free_tag() {
   return next_tag_;
 }
 
-/// Cleans the surfaces, closes their flat holes, and names the holes of all surfaces together. Frees points
-/// and triangles of `surfaces`; their groups receive those of caps.
+/// Cleans the surfaces, takes walls out, closes flat holes, and names the holes of all surfaces together.
+/// Frees points and triangles of `surfaces`; their groups receive those of caps.
 std::vector<BodyBuilder::ClosedSurface> BodyBuilder::close_holes(std::vector<MaterialSurface>& surfaces,
-                                                                 std::set<std::string> names) {
+                                                                 NestedRule nested, RegionRule rule,
+                                                                 bool partitioned) {
   std::vector<ClosedSurface> closed;
   std::vector<SurfaceHole>& holes = input_.holes;
   Vec3 low = Vec3::Constant(INFINITY), high = Vec3::Constant(-INFINITY);
@@ -133,7 +146,16 @@ std::vector<BodyBuilder::ClosedSurface> BodyBuilder::close_holes(std::vector<Mat
     s.surface.triangles = {};
     s.surface.triangle_groups = {};
     for (const Vec3& p : own.cleaned.points) low = low.cwiseMin(p), high = high.cwiseMax(p);
-    for (const SurfaceRegion& group : s.surface.groups) names.insert(group.name);
+    for (const SurfaceRegion& group : s.surface.groups) names_.insert(group.name);
+    const auto joined = joined_.find(i);
+    if (joined != joined_.end() && rule == RegionRule::cells)
+      own.walled = std::move(joined->second);
+    else if (joined != joined_.end())
+      own.cleaned = outline_of(joined->second.divided);
+    else
+      own.walled = separate_walls(own.cleaned, s.file, nested, rule, contact_, progress_);
+    if (own.has_cells() && partitioned) own.walled.reset();
+    if (own.has_cells()) continue;
     for (SurfaceHole& hole : close_flat_holes(own.cleaned, s.surface.groups, s.file, caps_, own.findings)) {
       hole.surface = i;
       holes.push_back(std::move(hole));
@@ -141,7 +163,7 @@ std::vector<BodyBuilder::ClosedSurface> BodyBuilder::close_holes(std::vector<Mat
     if (progress_) progress_->throw_if_stopped();
   }
   order_holes(holes);
-  name_holes(holes, caps_.names, names, (high - low).norm());
+  name_holes(holes, caps_.names, names_, (high - low).norm());
   for (const SurfaceHole& hole : holes)
     if (hole.sharp) surfaces[hole.surface].surface.groups[hole.group] = {0, hole.name};
   return closed;
@@ -149,16 +171,23 @@ std::vector<BodyBuilder::ClosedSurface> BodyBuilder::close_holes(std::vector<Mat
 
 void BodyBuilder::add(std::vector<MaterialSurface> surfaces, NestedRule nested, RegionRule rule,
                       const std::vector<Partition>& partitions, std::set<std::string> names) {
-  std::vector<ClosedSurface> closed = close_holes(surfaces, std::move(names));
+  names_ = std::move(names);
+  std::vector<ClosedSurface> closed = close_holes(surfaces, nested, rule, !partitions.empty());
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     MaterialSurface& s = surfaces[i];
     std::vector<Diagnostic>& findings = closed[i].findings;
-    CleanedSurface cleaned = std::move(closed[i].cleaned);
     const std::vector<SurfaceRegion> groups = s.surface.groups;
-    if (!add_layers(cleaned, s, nested, partitions, findings) &&
-        (rule == RegionRule::outer || !may_have_inner_walls(cleaned) ||
-         !add_cells(cleaned, s, nested, findings))) {
-      SurfaceRepair repaired = repair_cleaned(std::move(cleaned), s.file, nested, std::move(findings));
+    if (const std::optional<WalledSurface>& walled = closed[i].walled; walled && walled->walls) {
+      take_walls(*walled->walls, *walled->given, walled->divided, s, rule, findings);
+      add_finding(findings, DiagnosticCode::inner_walls_dropped,
+                  "triangles of walls that are tiny or lie on others, with an area of " +
+                      short_number(walled->walls->dropped_area),
+                  walled->walls->dropped, walled->walls->dropped_place, "left out");
+    }
+    if (!add_layers(closed[i].cleaned, s, nested, partitions, findings) &&
+        (rule == RegionRule::outer || !add_cells(closed[i], s, nested))) {
+      SurfaceRepair repaired =
+          repair_cleaned(std::move(closed[i].cleaned), s.file, nested, std::move(findings));
       findings = std::move(repaired.findings);
       input_.bodies.push_back({s.name, s.tag, s.file, std::move(repaired.surface), groups});
       for (std::size_t k = 0; k < repaired.nested.size(); ++k)
@@ -297,21 +326,61 @@ void BodyBuilder::report_partitions(const DividedSurface& divided, const Partiti
 
 /// Adds the cells of a surface as bodies.
 /// \return false if inner walls do not divide it
-bool BodyBuilder::add_cells(const CleanedSurface& cleaned, const MaterialSurface& from, NestedRule nested,
-                            std::vector<Diagnostic>& findings) {
-  const double tolerance = tolerance_for(cleaned, from);
-  DividedSurface divided = divide_surface(cleaned, tolerance, progress_);
-  if (divided.unresolved)
-    findings.push_back({.code = DiagnosticCode::bodies_not_joined,
-                        .what = "parts of a surface that meet are not joined",
-                        .done = "their facets there are about as small as the contact tolerance of " +
-                                short_number(tolerance) + "; inner walls are left out",
-                        .places = {*divided.unresolved}});
-  if (!divided.has_inner_walls()) return false;
+bool BodyBuilder::add_cells(ClosedSurface& surface, const MaterialSurface& from, NestedRule nested) {
+  std::vector<Diagnostic>& findings = surface.findings;
+  if (!surface.has_cells()) {
+    if (!may_have_inner_walls(surface.cleaned)) return false;
+    const double tolerance = tolerance_for(surface.cleaned, from);
+    WalledSurface walled;
+    walled.divided = divide_surface(surface.cleaned, tolerance, progress_);
+    if (walled.divided.unresolved)
+      findings.push_back({.code = DiagnosticCode::bodies_not_joined,
+                          .what = "parts of a surface that meet are not joined",
+                          .done = "their facets there are about as small as the contact tolerance of " +
+                                  short_number(tolerance) + "; inner walls are left out",
+                          .places = {*walled.divided.unresolved}});
+    if (!walled.divided.has_inner_walls()) return false;
+    walled.patches = find_connected_patches(surface.cleaned.points, surface.cleaned.triangles);
+    surface.walled = std::move(walled);
+  }
+  DividedSurface& divided = surface.walled->divided;
+  const CleanedSurface& given = surface.walled->given ? *surface.walled->given : surface.cleaned;
   arrange_shells(divided.cells, nested, findings);
-  report_cells(divided, findings);
+  std::vector<const RepairedSurface*> solids;
+  for (const SurfaceCell& cell : divided.cells) solids.push_back(&cell.surface);
+  const InnerWalls walls = walls_inside(solids, given, surface.walled->patches, divided);
+  report_cells(divided, walls, findings);
+  take_walls(walls, given, divided, from, RegionRule::cells, findings);
   add_bodies(std::move(divided.cells), from, from.surface.groups);
   return true;
+}
+
+/// Keeps walls as sheets, or leaves them out as asked or where there are layers.
+void BodyBuilder::take_walls(const InnerWalls& walls, const CleanedSurface& surface,
+                             const DividedSurface& divided, const MaterialSurface& from, RegionRule rule,
+                             std::vector<Diagnostic>& findings) {
+  if (walls.kept.triangles.empty()) return;
+  const std::string with_area = "inside '" + from.name + "', with an area of " + short_number(walls.area);
+  WallSheet sheet = sheet_of_walls(walls, surface, divided, from, names_);
+  std::erase_if(input_.groups, [&](const MesherInput::Group& g) {
+    return std::find(sheet.groups.begin(), sheet.groups.end(), g.group) != sheet.groups.end();
+  });
+  if (rule == RegionRule::outer || !input_.layers.empty()) {
+    add_finding(findings, DiagnosticCode::inner_walls_dropped, "triangles of walls " + with_area,
+                walls.kept.triangles.size(), walls.place, "left out");
+    return;
+  }
+  std::set<std::string> names;
+  for (const SurfaceRegion& group : sheet.sheet.surface.groups) names.insert(group.name);
+  if (names.empty()) names.insert(sheet.sheet.name);
+  const bool single = walls.pieces == 1;
+  findings.push_back(
+      {.code = DiagnosticCode::walls_kept_as_sheets,
+       .what = (single ? "a wall of zero thickness " : "walls of zero thickness ") + with_area,
+       .count = single ? 0 : walls.pieces,
+       .done = (names.size() == 1 ? "kept as the sheet" : "kept as the sheets") + listed(names),
+       .places = {walls.place}});
+  walls_.push_back(std::move(sheet.sheet));
 }
 
 void BodyBuilder::add_bodies(std::vector<SurfaceCell> cells, const MaterialSurface& from,
@@ -320,8 +389,9 @@ void BodyBuilder::add_bodies(std::vector<SurfaceCell> cells, const MaterialSurfa
   for (std::size_t k = 0; k < cells.size(); ++k) {
     SurfaceCell& cell = cells[k];
     cells_.insert(input_.bodies.size());
-    input_.bodies.push_back({cell_name(cell, k + 1, from, used), k == 0 ? from.tag : free_tag(), from.file,
-                             std::move(cell.surface), groups});
+    std::string name = cells.size() == 1 ? from.name : cell_name(cell, k + 1, from, used);
+    input_.bodies.push_back(
+        {std::move(name), k == 0 ? from.tag : free_tag(), from.file, std::move(cell.surface), groups});
   }
 }
 
@@ -334,12 +404,14 @@ std::string BodyBuilder::cell_name(const SurfaceCell& cell, std::size_t number, 
   return from.name + "_" + std::to_string(number);
 }
 
-void BodyBuilder::report_cells(const DividedSurface& divided, std::vector<Diagnostic>& findings) const {
-  add_finding(findings, DiagnosticCode::cells_separated, "cells between the inner walls of a surface",
-              divided.cells.size(), divided.cells[0].surface.points[0], "each a material of its own");
+void BodyBuilder::report_cells(const DividedSurface& divided, const InnerWalls& walls,
+                               std::vector<Diagnostic>& findings) const {
+  if (divided.cells.size() > 1)
+    add_finding(findings, DiagnosticCode::cells_separated, "cells between the inner walls of a surface",
+                divided.cells.size(), divided.cells[0].surface.points[0], "each a material of its own");
   add_finding(findings, DiagnosticCode::inner_walls_dropped,
-              "triangles of sheets that bound no cell, with an area of " + short_number(divided.sheet_area),
-              divided.sheet_triangles, divided.sheet, "left out");
+              "triangles of sheets that bound no cell, with an area of " + short_number(walls.dropped_area),
+              walls.dropped, walls.dropped_place, "left out");
   add_finding(findings, DiagnosticCode::inner_walls_dropped,
               "cells that are tiny or thinner than the tolerance", divided.dissolved_cells, divided.dissolved,
               "joined with a neighbour");

@@ -49,6 +49,7 @@ class SurfaceDivider {
     measure_cells();
     dissolve_small_cells();
     find_sheets();
+    compare_repeated();
     add_cells();
     order_cells();
     return std::move(result_);
@@ -68,8 +69,13 @@ class SurfaceDivider {
     SurfaceSoup soup;
     soup.points = surface_.points;
     std::vector<Index> origin;
+    result_.bounds.assign(surface_.triangles.size(), 0);
+    result_.between.assign(surface_.triangles.size(), 0);
     for (Index t = 0; t < surface_.triangles.size(); ++t) {
-      if (surface_.two_sided[t] && surface_.even[t]) continue;
+      if (surface_.two_sided[t] && surface_.even[t]) {
+        result_.bounds[t] = 1;
+        continue;
+      }
       soup.triangles.push_back(surface_.triangles[t]);
       origin.push_back(t);
     }
@@ -81,9 +87,12 @@ class SurfaceDivider {
       return false;
     }
     points_ = std::move(imprinted.points);
-    std::set<Triangle> known;
+    std::map<Triangle, Index> known;
     for (std::size_t i = 0; i < imprinted.triangles.size(); ++i) {
-      if (const Triangle& t = imprinted.triangles[i]; !known.insert(sorted(t)).second) {
+      const Triangle& t = imprinted.triangles[i];
+      const auto [first, added] = known.try_emplace(sorted(t), static_cast<Index>(triangles_.size()));
+      if (!added) {
+        first_of_repeated_.push_back(first->second);
         result_.repeated.push_back(
             {{points_[t[0]], points_[t[1]], points_[t[2]]}, origin[imprinted.source[i]], false, false});
         continue;
@@ -186,8 +195,12 @@ class SurfaceDivider {
   void find_sheets() {
     double largest = -1;
     for (Index t = 0; t < triangles_.size(); ++t) {
-      const Index behind = label(cells_.sides[t][0]);
-      if (behind != label(cells_.sides[t][1])) continue;
+      const Index behind = label(cells_.sides[t][0]), front = label(cells_.sides[t][1]);
+      const bool is_bound = cells_.sides[t][0] != cells_.sides[t][1];
+      if (is_bound) result_.bounds[source_[t]] = 1;
+      if (behind != front && behind != label(outside_) && front != label(outside_))
+        result_.between[source_[t]] = 1;
+      if (behind != front) continue;
       const double own = area(t);
       ++result_.sheet_triangles;
       result_.sheet_area += own;
@@ -195,8 +208,21 @@ class SurfaceDivider {
       result_.sheets.push_back({{corner(t, 0), corner(t, 1), corner(t, 2)},
                                 source_[t],
                                 behind == label(outside_),
-                                at_border_[t] != 0});
+                                at_border_[t] != 0,
+                                cells_.sides[t][0],
+                                is_bound});
       if (own > largest) largest = own, result_.sheet = centre(t);
+    }
+  }
+
+  /// Repeated triangles bound what the first ones with the same corners do.
+  void compare_repeated() {
+    for (std::size_t i = 0; i < result_.repeated.size(); ++i) {
+      WallTriangle& own = result_.repeated[i];
+      const auto [behind, front] = cells_.sides[first_of_repeated_[i]];
+      own.cell = behind;
+      own.at_cell = behind != front;
+      own.outside = label(behind) == label(outside_);
     }
   }
 
@@ -297,6 +323,7 @@ class SurfaceDivider {
   std::vector<Vec3> points_;
   std::vector<Triangle> triangles_;
   std::vector<Index> source_;  ///< of each triangle: that of the surface
+  std::vector<Index> first_of_repeated_;
   SurfaceCells cells_;
   Index outside_ = 0;                   ///< a number of labels_ after those of the cells
   std::optional<DisjointSets> labels_;  ///< cells that are joined
@@ -313,6 +340,39 @@ bool DividedSurface::has_inner_walls() const {
   bool walled = false;
   for (const SurfaceCell& c : cells) area += c.surface.area, walled |= c.walled;
   return walled && outside_sheet_area <= area;
+}
+
+CleanedSurface outline_of(const DividedSurface& divided) {
+  CleanedSurface all;
+  std::map<std::array<double, 3>, Index> numbers;
+  std::map<Triangle, std::size_t> sides;  // number of cells at each triangle
+  for (const SurfaceCell& cell : divided.cells) {
+    for (Triangle t : cell.surface.triangles) {
+      for (Index& p : t) {
+        const Vec3& point = cell.surface.points[p];
+        const auto [known, added] =
+            numbers.try_emplace({point.x(), point.y(), point.z()}, static_cast<Index>(all.points.size()));
+        if (added) all.points.push_back(point);
+        p = known->second;
+      }
+      all.triangles.push_back(t);
+      ++sides[sorted(t)];
+    }
+    all.groups.insert(all.groups.end(), cell.surface.groups.begin(), cell.surface.groups.end());
+  }
+  std::vector<Triangle> outer;
+  std::vector<std::uint32_t> groups;
+  for (Index t = 0; t < all.triangles.size(); ++t) {
+    if (sides.at(sorted(all.triangles[t])) > 1) continue;
+    outer.push_back(all.triangles[t]);
+    if (!all.groups.empty()) groups.push_back(all.groups[t]);
+  }
+  all.triangles = std::move(outer);
+  all.groups = std::move(groups);
+  all.points = keep_used(all.points, all.triangles);
+  all.two_sided.assign(all.triangles.size(), 0);
+  all.even.assign(all.triangles.size(), 0);
+  return all;
 }
 
 bool may_have_inner_walls(const CleanedSurface& surface) {

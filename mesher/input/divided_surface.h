@@ -28,6 +28,8 @@ struct WallTriangle {
   Index source;    ///< the triangle of the surface that it is a part of
   bool outside;    ///< not in a cell
   bool at_border;  ///< has an edge that no other triangle has
+  Index cell = 0;  ///< equal numbers are in the same part of space; parts around pieces of the surface differ
+  bool at_cell = false;  ///< bounds a cell: one that was dissolved, or if it is there twice
 
   double area() const { return (corners[1] - corners[0]).cross(corners[2] - corners[0]).norm() / 2; }
   Vec3 centre() const { return (corners[0] + corners[1] + corners[2]) / 3; }
@@ -46,6 +48,9 @@ struct DividedSurface {
   double outside_sheet_area = 0;  ///< the part with the outside on both sides
   std::optional<Vec3> sheet;      ///< the centre of the largest one
   std::vector<WallTriangle> sheets;
+  std::vector<char>
+      bounds;  ///< by triangle of the surface: 1 if a part of it bounds a cell, also one that was dissolved
+  std::vector<char> between;           ///< likewise: 1 if a part of it is between two cells
   std::vector<WallTriangle> repeated;  ///< left out, since an earlier triangle has the same corners
   std::size_t dissolved_cells = 0;     ///< too small or thin, joined with a neighbour
   std::optional<Vec3> dissolved;       ///< on the boundary of one
@@ -56,6 +61,10 @@ struct DividedSurface {
   /// True if two cells share a wall, and no more area hangs outside than the cells have.
   bool has_inner_walls() const;
 };
+
+/// The surface between the cells and the outside, as it was cut.
+/// \param divided has cells
+CleanedSurface outline_of(const DividedSurface& divided);
 
 /// True if sheets are joined at edges of an odd number of three or more triangles. Closed shells that touch
 /// have an even number at each edge. A triangle that the file lists twice counts twice.

@@ -11,6 +11,7 @@
 #include "common/message_text.h"
 #include "mesher/input/body_builder.h"
 #include "mesher/input/body_contacts.h"
+#include "mesher/input/patch_joining.h"
 #include "mesher/input/qualified_names.h"
 #include "mesher/input/self_crossings.h"
 #include "mesher/input/sheet_surfaces.h"
@@ -111,6 +112,28 @@ void validate_materials(const MesherInput& input) {
     }
 }
 
+/// Joins bodies and sheets, together with walls of their files.
+/// \return false, with a note why, if walls prevent that; nothing else has changed then
+bool join_with_walls(MesherInput& input, const SheetSoup& inner, const std::vector<SheetSurface>& walls,
+                     const ContactOptions& contact, Progress* progress) {
+  MesherInput joined = input;
+  SheetSoup all = inner;
+  try {
+    for (const SheetSurface& s : walls) all.add(s, joined.sheets, joined.findings);
+    join_bodies(joined, all, contact, progress);
+  } catch (const InputError& e) {
+    for (const SheetSurface& s : walls)
+      input.findings.push_back({.code = DiagnosticCode::inner_walls_dropped,
+                                .file = s.file,
+                                .what = "walls of zero thickness, after all",
+                                .done = "left out: " + std::string(e.what()),
+                                .places = {s.surface.points[0]}});
+    return false;
+  }
+  input = std::move(joined);
+  return true;
+}
+
 }  // namespace
 
 double longest_side(const MesherInput& input) { return (input.high - input.low).maxCoeff(); }
@@ -124,10 +147,13 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
                               Progress* progress, const SheetOptions& sheets, const CapOptions& caps) {
   if (surfaces.empty()) throw UsageError("there is no surface to mesh");
   MesherInput input;
+  std::map<std::size_t, WalledSurface> joined = join_patches(surfaces, contact, input.findings, progress);
   name_groups(surfaces, input.findings);
   input.groups = measure_groups(surfaces);
   std::set<MaterialTag> tags = tags_in_use(surfaces, layers);
+  input.layers = std::move(layers);
   BodyBuilder builder(input, std::move(tags), contact, caps, progress);
+  builder.set_joined(std::move(joined));
   std::vector<Partition> partitions;
   for (const SheetSurface& s : sheets.surfaces)
     if (s.divides) partitions.push_back(make_partition(s, sheets.extend, input.findings));
@@ -135,7 +161,6 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
   for (const SheetSurface& s : sheets.surfaces) names.insert(s.name);
   builder.add(std::move(surfaces), nested, regions.rule, partitions, std::move(names));
   builder.name(regions.seeds);
-  input.layers = std::move(layers);
   find_bounding_box(input);
   validate_materials(input);
   require_measurable(longest_side(input), largest_coordinate(input), "surface", input.bodies[0].file);
@@ -147,6 +172,8 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
                      input.layers[0].name + "'; leave out one of them, or give the layer as a surface");
   const double tolerance = contact_tolerance(contact, (input.high - input.low).norm());
   for (MesherInput::Body& body : input.bodies) resolve_self_crossings(body, tolerance, progress);
+  if (!builder.walls().empty() && join_with_walls(input, inner, builder.walls(), contact, progress))
+    return input;
   join_bodies(input, inner, contact, progress);
   return input;
 }

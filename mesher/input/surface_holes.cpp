@@ -95,7 +95,16 @@ std::uint64_t mixed(std::uint64_t key) {
   return key ^ (key >> 31);
 }
 
-/// Whether an edge has one triangle only.
+double degrees_of(const FeatureAngle& angle) {
+  constexpr double automatic = 35;  // as of find_patches()
+  constexpr double never = 360;
+  return angle.rule == FeatureAngle::Rule::off       ? never
+         : angle.rule == FeatureAngle::Rule::degrees ? angle.degrees
+                                                     : automatic;
+}
+
+}  // namespace
+
 bool has_free_edges(const std::vector<Triangle>& triangles) {
   // Edges of two triangles cancel out, so that closed surfaces need no sorting.
   std::uint64_t odd = 0;
@@ -112,16 +121,6 @@ bool has_free_edges(const std::vector<Triangle>& triangles) {
   }
   return false;
 }
-
-double degrees_of(const FeatureAngle& angle) {
-  constexpr double automatic = 35;  // as of find_patches()
-  constexpr double never = 360;
-  return angle.rule == FeatureAngle::Rule::off       ? never
-         : angle.rule == FeatureAngle::Rule::degrees ? angle.degrees
-                                                     : automatic;
-}
-
-}  // namespace
 
 std::vector<SurfaceHole> close_flat_holes(CleanedSurface& surface, std::vector<SurfaceRegion>& groups,
                                           const std::string& file, const CapOptions& options,

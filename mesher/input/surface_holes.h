@@ -12,6 +12,9 @@
 
 namespace tetwright {
 
+/// Whether an edge has one triangle only. O(n) for closed surfaces.
+bool has_free_edges(const std::vector<Triangle>& triangles);
+
 /// Finds the holes of a surface, which are the connected sets of its free edges (*rims*), and closes those
 /// that are flat: a *cap* is the part of the rim's plane that the rim encloses, or that lies between several
 /// rims in one plane. Its triangles use the points of the rims only and are appended to the surface. Caps of

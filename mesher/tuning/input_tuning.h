@@ -46,6 +46,26 @@ struct InputTuning {
     static constexpr double step_inside = 1e-4;
   };
 
+  /// Walls of zero thickness that are part of a body's surface.
+  struct Walls {
+    /// Share of a patch that must be inside the body: a plate may reach far beyond it, while a loose piece
+    /// that only touches it is no wall.
+    static constexpr double inside_share = 0.1;
+    /// Smaller pieces, as a share of the body's surface, are dropped: about the size of one face of a mesh of
+    /// a million tets.
+    static constexpr double min_share = 1e-5;
+  };
+
+  /// Open surfaces that close together.
+  struct Patches {
+    /// Share of a surface's border, by length, that must lie on others: all but what cleaning and rounding
+    /// may change.
+    static constexpr double border_share = 0.99;
+    /// Share from which it is reported that surfaces do not close: more than two bodies with holes have in
+    /// common by chance.
+    static constexpr double mentioned_share = 0.5;
+  };
+
   /// Holes and their caps.
   struct Holes {
     /// Max distance of a flat rim from its plane, in diagonals: the rounding of coordinates written with six
@@ -86,6 +106,7 @@ struct InputTuning {
   struct Messages {
     static constexpr std::size_t max_listed_labels = 30;  ///< in one message
     static constexpr std::size_t max_named_labels = 20;   ///< with a finding of their own
+    static constexpr std::size_t max_named_walls = 12;    ///< in one message
   };
 };
 

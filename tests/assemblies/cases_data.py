@@ -7,6 +7,7 @@ import numpy as np
 
 import surfaces as sf
 from case import FLAT, ROUND, Case, Input, case, expectations, of_partition, sheet_expectations
+from cases_walls import patches_of
 from partition import conforming
 
 
@@ -73,6 +74,13 @@ def _():
 @case("data_subdomains_one_file")
 def _():
     return of_files({"subdomains": "cgal3897_one_file.off"}, bodies(*SUBDOMAINS), ROUND, by_position=True)
+
+
+@case("data_subdomains_patches")
+def _():
+    """The sheets of the one file, each in a file of its own: connected across edges of two triangles."""
+    points, triangles = sf.read_off(data("cgal3897_one_file.off"))
+    return of_partition(bodies(*SUBDOMAINS), patches_of(points, triangles), ROUND, by_position=True)
 
 
 def horizons():

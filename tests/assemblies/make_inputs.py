@@ -26,6 +26,7 @@ import cases  # noqa: F401
 import cases_data  # noqa: F401
 import cases_garbage  # noqa: F401
 import cases_sheets  # noqa: F401
+import cases_walls  # noqa: F401
 
 
 def chosen(patterns):

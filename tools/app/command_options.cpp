@@ -218,8 +218,8 @@ void add_material_options(CLI::App& app, CommandLine& c) {
   add_rule<RegionRule>(
       app, "--regions", c.options.bodies.regions.rule,
       {{"cells", RegionRule::cells}, {"outer", RegionRule::outer}},
-      "Inner walls of a surface divide it into materials NAME_1, NAME_2 ... (by volume): cells, or are left "
-      "out: outer");
+      "Inner walls of a surface divide it into materials NAME_1, NAME_2 ... (by volume), or are sheets where "
+      "they end inside: cells; or all are left out: outer");
   const auto add_sheets = [&](const char* option, std::vector<NamedValue>& sheets, const char* help) {
     app.add_option_function<std::vector<std::string>>(
            option,
@@ -246,7 +246,8 @@ void add_material_options(CLI::App& app, CommandLine& c) {
            for (const std::string& text : all)
              c.options.bodies.regions.seeds.push_back(parse_seed("--region", text));
          },
-         "Call the cell between inner walls that contains this point NAME; repeatable")
+         "Call the cell between inner walls, or surfaces that close together, that contains this point NAME; "
+         "repeatable")
       ->expected(1)
       ->type_name("NAME@X,Y,Z")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -269,7 +270,12 @@ SurfaceComparison compare_with_surfaces(const TetMesh& mesh, const std::vector<T
       for (const Index p : t) box.add(s.points[p]);
   c.diagonal = (box.high - box.low).norm();
   TetMesh part = compared_part(mesh, surfaces.size() > 1, c);
-  const ProjectionTree of_mesh = tree_of(part), of_surfaces = tree_of(surfaces);
+  TetMesh shown = part;
+  // Walls of zero thickness in a file are sheets of its mesh.
+  if (!input.sheets.empty())
+    std::copy_if(mesh.interfaces.begin(), mesh.interfaces.end(), std::back_inserter(shown.interfaces),
+                 [](const InterfaceTriangle& t) { return t.is_sheet(); });
+  const ProjectionTree of_mesh = tree_of(shown), of_surfaces = tree_of(surfaces);
   const double accuracy = tolerance::deviation_share * c.diagonal;
   const OpenEdges open = find_open_edges(input);
   c.open_edges = open.count;

@@ -285,7 +285,13 @@ enum class SurfaceFlaw : std::uint8_t {
 /// A surface with *inner walls* has single sheets that are joined to others at edges of three or more
 /// triangles. With RegionRule::cells each cell between its sheets becomes a body, called by a seed in it, by
 /// the group that is its whole outer boundary, or NAME_1, NAME_2 and so on by volume, largest first. A wall
-/// is part of both cells' surfaces. Closed shells that touch, cross or contain each other are no walls.
+/// is part of both cells' surfaces. Closed shells that touch, cross or contain each other are no walls. Walls
+/// inside of cells, or of a surface that is closed without them, become sheets, called by the groups that lie
+/// nowhere else, or NAME_sheet; with RegionRule::outer, or with layers, they are left out.
+///
+/// Open surfaces whose borders lie on each other within the contact tolerance, and that close together,
+/// become one with such cells, instead of the first of them. Its groups are called like the surfaces. A
+/// single cell is called like the first of them.
 ///
 /// Flat holes are closed first, see CapOptions. Caps are called cap_1, cap_2 and so on by size, largest
 /// first.

@@ -134,21 +134,6 @@ TEST(DividedSurface, FinsAndFoldsOfAScanMakeNoMaterials) {
   }
 }
 
-TEST(DividedSurface, SheetsThatBoundNothingAreReported) {
-  // Attached along one edge of a wall, with three free edges.
-  TriangleMesh mesh = row_of_boxes({0, 1, 2});
-  mesh = joined(mesh, square({1, 0, 0}, {0.5, 0, 0}, {0, 1, 0.5}));
-  const MesherInput input = input_of(mesh);
-  EXPECT_EQ(input.bodies.size(), 2U);
-  const auto found = std::find_if(input.findings.begin(), input.findings.end(), [](const Diagnostic& f) {
-    return f.code == DiagnosticCode::inner_walls_dropped;
-  });
-  ASSERT_NE(found, input.findings.end());
-  EXPECT_GE(found->count, 2U);
-  EXPECT_NE(found->what.find("bound no cell, with an area of 0.559"), std::string::npos) << found->what;
-  ASSERT_EQ(found->places.size(), 1U);
-}
-
 TEST(DividedSurface, GroupsNameTheCellsTheyAreTheWholeOutsideOf) {
   TriangleMesh mesh = row_of_boxes({0, 1, 3});
   mesh.groups = {{1, "ore"}, {2, "gangue"}, {3, "inlet"}};
