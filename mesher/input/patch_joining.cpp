@@ -25,7 +25,7 @@ namespace tetwright {
 
 namespace {
 
-using Tuning = InputTuning::Patches;
+using PatchTuning = InputTuning::Patches;
 
 /// An edge of one triangle only.
 struct FreeEdge {
@@ -79,10 +79,10 @@ class PatchJoiner {
     if (open_.size() < 2) return {};
     find_neighbours();
     std::vector<char> joined(open_.size(), 0);
-    for (const std::vector<Index>& set : connected(meeting(joined, Tuning::border_share)))
+    for (const std::vector<Index>& set : connected(meeting(joined, PatchTuning::border_share)))
       if (join_set(set))
         for (const Index k : set) joined[k] = 1;
-    for (const std::vector<Index>& set : connected(meeting(joined, Tuning::mentioned_share))) report_gap(set);
+    for (const std::vector<Index>& set : connected(meeting(joined, PatchTuning::mentioned_share))) report_gap(set);
     return take_joined();
   }
 
