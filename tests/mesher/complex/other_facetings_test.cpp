@@ -150,6 +150,22 @@ INSTANTIATE_TEST_SUITE_P(Pins, PinFacetings,
                                          Faceting{16, 7, 24, 16, 1}, Faceting{16, 7, 32, 16, 2},
                                          Faceting{16, 6, 16, 10, 2}, Faceting{24, 7, 16, 16, 1}));
 
+/// A tolerance above the size of facets is no tolerance any more: the imprint ends nevertheless, and says so
+/// or leaves bodies that are closed.
+TEST(OtherFacetings, ToleranceAboveFacetsIsReportedOrHarmless) {
+  const SurfaceSoup soup = soup_of(bodies_of({32, 12, 32, 24, 2}));
+  for (const double tolerance : {0.05, 0.1, 0.2}) {
+    SCOPED_TRACE(tolerance);
+    const ImprintedSurfaces imprinted = imprint_surfaces(soup, tolerance, nullptr);
+    if (imprinted.unresolved) continue;
+    const ComplexResult found = build_complex(imprinted, soup, 2, tolerance);
+    if (found.inconsistent) continue;
+    const double full = polygon_area(32);
+    EXPECT_NEAR(volume_of(found.complex, 1), full * 3 * 2 * half_height, 15 * tolerance);
+    EXPECT_NEAR(volume_of(found.complex, 2), full * (pin_high - pin_low), 6 * tolerance);
+  }
+}
+
 TEST(OtherFacetings, NumbersOfThreadsDoNotChangeAnything) {
   const Faceting f{16, 7, 32, 16, 2};
   const SurfaceSoup soup = soup_of(bodies_of(f));
