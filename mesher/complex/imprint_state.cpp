@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 #include <set>
+#include <span>
 
 #include "common/geometry/box_pairs.h"
 #include "common/parallel/parallel_sort.h"
@@ -107,7 +108,7 @@ std::vector<ImprintEvent> ImprintState::find_events() {
           const std::size_t before = out.size();
           points_against(a, pairs_[i][1], out);
           points_against(b, pairs_[i][0], out);
-          edges_against(a, b, out);
+          edges_against(pairs_[i], out);
           pierce(a, pairs_[i][1], out);
           pierce(b, pairs_[i][0], out);
           has_events[i] = out.size() > before;
@@ -151,7 +152,8 @@ void ImprintState::points_against(const Part& a, Index t, std::vector<ImprintEve
   }
 }
 
-void ImprintState::edges_against(const Part& a, const Part& b, std::vector<ImprintEvent>& out) const {
+void ImprintState::edges_against(const ImprintEdge& pair, std::vector<ImprintEvent>& out) const {
+  const Part &a = triangles_[pair[0]], &b = triangles_[pair[1]];
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t k = 0; k < 3; ++k) {
       ImprintEdge e = ascending_edge(a.ids[i], a.ids[(i + 1) % 3]),
@@ -164,7 +166,11 @@ void ImprintState::edges_against(const Part& a, const Part& b, std::vector<Impri
         return std::any_of(x.begin(), x.end(),
                            [&](Index p) { return foot_on(at(p), at(y[0]), at(y[1])).second <= squared_; });
       };
-      if (ends_near(e, f) || ends_near(f, e)) continue;
+      if (ends_near(e, f) || ends_near(f, e)) {
+        if (near.squared <= Imprint::flat_share * Imprint::flat_share * squared_)
+          out.push_back({ImprintEvent::Kind::diagonals, pair[0], pair[1], e, f, a.surface, b.surface});
+        continue;
+      }
       std::uint32_t first = a.surface, second = b.surface;
       if (f < e) {
         std::swap(e, f);
@@ -205,11 +211,60 @@ std::optional<double> ImprintState::crossing(const ImprintEdge& e, const Triangl
   return share;
 }
 
-std::vector<ImprintEvent> ImprintState::find_slivers(double limit) const {
+std::vector<ImprintEvent> ImprintState::take_diagonals(std::vector<ImprintEvent>& events) const {
+  const auto first = std::partition_point(events.begin(), events.end(), [](const ImprintEvent& e) {
+    return e.kind < ImprintEvent::Kind::diagonals;
+  });
+  std::vector<ImprintEvent> out;
+  std::set<ImprintEdge> used;
+  for (const ImprintEvent& e : std::span(first, events.end())) {
+    double least = squared_;
+    ImprintEvent nearest;
+    std::array<ImprintEdge, 3> own{};
+    // The triangle of a common point and an edge near it vanishes, as slivers do.
+    const auto look_at = [&](Index p, const ImprintEdge& edge, const Part& t) {
+      const auto [share, squared] = foot_on(at(p), at(edge[0]), at(edge[1]));
+      if (squared > least || !(share > 0 && share < 1) || !has(t.ids, p)) return;
+      least = squared;
+      nearest = {ImprintEvent::Kind::point_on_edge, p, no_index, edge, {}, t.surface, 0};
+      own = {edge, ascending_edge(p, edge[0]), ascending_edge(p, edge[1])};
+    };
+    for (const Index p : e.first) look_at(p, e.second, triangles_[e.other]);
+    for (const Index p : e.second) look_at(p, e.first, triangles_[e.point]);
+    if (nearest.point == no_index ||
+        std::any_of(own.begin(), own.end(), [&](const ImprintEdge& x) { return used.contains(x); }))
+      continue;
+    used.insert(own.begin(), own.end());
+    used.insert({e.first, e.second});
+    out.push_back(nearest);
+  }
+  events.erase(first, events.end());
+  parallel_sort_unique(out);
+  return out;
+}
+
+bool ImprintState::passes_common_point(const ImprintEvent& e) const {
+  if (e.kind != ImprintEvent::Kind::edges_cross) return false;
+  const SegmentPair near = nearest_points(at(e.first[0]), at(e.first[1]), at(e.second[0]), at(e.second[1]));
+  const Vec3 place = at(e.first[0]) + near.s * (at(e.first[1]) - at(e.first[0]));
+  const auto is_common_end = [&](Index p) {
+    return (at(p) - place).squaredNorm() <= Imprint::moved_away * squared_ && is_on(p, e.owner) &&
+           is_on(p, e.second_owner);
+  };
+  return std::any_of(e.first.begin(), e.first.end(), is_common_end) ||
+         std::any_of(e.second.begin(), e.second.end(), is_common_end);
+}
+
+bool ImprintState::is_folded(const Part& t) const {
+  const Vec3& a = at(t.ids[0]);
+  return (at(t.ids[1]) - a).cross(at(t.ids[2]) - a).dot(normals_[t.source]) < 0;
+}
+
+std::vector<ImprintEvent> ImprintState::find_slivers(double limit, bool only_folds) const {
   std::vector<ImprintEvent> found;
   std::set<ImprintEdge> used;
   for (const Part& t : triangles_) {
-    if (!t.active) continue;
+    if (!t.active || (only_folds && !is_folded(t))) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       const Index p = t.ids[k];
       const ImprintEdge e = ascending_edge(t.ids[(k + 1) % 3], t.ids[(k + 2) % 3]);

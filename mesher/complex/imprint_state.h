@@ -17,10 +17,17 @@ using ImprintEdge = std::array<Index, 2>;  ///< ascending
 /// Common part of two triangles of different surfaces that is not a common point yet. The kinds are ordered
 /// by what must come first.
 struct ImprintEvent {
-  enum class Kind : std::uint8_t { points, point_on_edge, point_in_triangle, edges_cross, edge_pierces };
-  Kind kind;
-  Index point = no_index;          ///< points, point_on_edge, point_in_triangle
-  Index other = no_index;          ///< points; or the triangle of the last and third kind
+  enum class Kind : std::uint8_t {
+    points,
+    point_on_edge,
+    point_in_triangle,
+    edges_cross,
+    edge_pierces,
+    diagonals,  ///< edges cross in one plane, and an end of one is a common point near the other
+  };
+  Kind kind{};
+  Index point = no_index;          ///< points, point_on_edge, point_in_triangle; or a triangle: diagonals
+  Index other = no_index;          ///< points; or the triangle of point_in_triangle, edge_pierces, diagonals
   ImprintEdge first{}, second{};   ///< edges
   std::uint32_t owner = 0;         ///< surface of the edge or triangle that receives the point
   std::uint32_t second_owner = 0;  ///< surface of the other edge
@@ -69,9 +76,17 @@ class ImprintState {
   /// \throws OutputError if they need more memory than is available
   void find_pairs(bool all);
   std::vector<ImprintEvent> find_events();
+  /// Removes the diagonals from events. Returns events that turn those of one surface into those of the
+  /// other: both divide four points in one plane differently, and which of them is above would be rounding.
+  /// \param events of find_events()
+  std::vector<ImprintEvent> take_diagonals(std::vector<ImprintEvent>& events) const;
+  /// Whether edges pass each other near the end of one that is a point of both surfaces already. Putting this
+  /// point on the other edge makes a sliver there, whose removal takes it off again.
+  bool passes_common_point(const ImprintEvent& e) const;
   /// Triangles whose height is at most `limit`, input units: the middle point is put on the longest edge,
   /// which makes them vanish. No two of them share an edge.
-  std::vector<ImprintEvent> find_slivers(double limit) const;
+  /// \param only_folds only those that moves of points have turned over
+  std::vector<ImprintEvent> find_slivers(double limit, bool only_folds = false) const;
   /// Fraction at which an edge crosses the interior of a triangle, with both ends farther than the tolerance
   /// from its plane.
   std::optional<double> crossing(const ImprintEdge& e, const Triangle& t) const;
@@ -79,6 +94,7 @@ class ImprintState {
   double tolerance_, squared_;
   Progress* progress_;
   std::vector<Vec3> points_;
+  std::vector<Vec3> normals_;  ///< of the triangles of the input, of any length
   std::vector<Part> triangles_;
   std::vector<ImprintEdge> pairs_;  ///< of triangles of different surfaces whose boxes meet
 
@@ -86,8 +102,9 @@ class ImprintState {
   void find_memberships();
   bool is_on(Index p, std::uint32_t surface) const;
   bool is_on(const ImprintEdge& e, std::uint32_t surface) const;
+  bool is_folded(const Part& t) const;
   void points_against(const Part& a, Index t, std::vector<ImprintEvent>& out) const;
-  void edges_against(const Part& a, const Part& b, std::vector<ImprintEvent>& out) const;
+  void edges_against(const ImprintEdge& pair, std::vector<ImprintEvent>& out) const;
   void pierce(const Part& a, Index t, std::vector<ImprintEvent>& out) const;
 
   using Membership = std::pair<std::uint64_t, std::uint32_t>;

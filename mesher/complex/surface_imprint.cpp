@@ -30,6 +30,8 @@ class Imprinter : private ImprintState {
     owner_.assign(soup.points.size(), 0);
     for (Index t = 0; t < soup.triangles.size(); ++t) {
       triangles_.push_back({soup.triangles[t], t, soup.surface[t], true, true});
+      const auto& [a, b, c] = soup.triangles[t];
+      normals_.push_back((at(b) - at(a)).cross(at(c) - at(a)));
       for (const Index p : soup.triangles[t]) owner_[p] = soup.surface[t];
     }
     first_new_ = soup.points.size();
@@ -37,29 +39,21 @@ class Imprinter : private ImprintState {
 
   ImprintedSurfaces run(const ImprintBound& bound) {
     double budget = bound.points;
-    for (int round = 0; round < Imprint::max_rounds; ++round) {
+    for (int round = 0; round < rounds(); ++round) {
       throw_if_stopped();
       find_pairs(round == 0);
       const double bytes = Imprint::bytes_per_triangle * static_cast<double>(triangles_.size()) +
                            Imprint::bytes_per_pair * static_cast<double>(pairs_.size());
       result_.peak_bytes = std::max(result_.peak_bytes, bytes);
       if (round == 0) budget = std::max(budget, bound.per_pair * static_cast<double>(pairs_.size()));
-      std::vector<Event> events = find_events();
-      if (events.empty()) {
-        events = find_slivers(Imprint::flat_share * tolerance_);
-      } else if (round >= Imprint::first_round_of_slivers) {
-        // A curve that three surfaces share may have kinks of up to the tolerance. A sliver at a kink, which
-        // only some of them have, would make the others cross forever.
-        if (std::vector<Event> slivers = find_slivers(tolerance_); !slivers.empty())
-          events = std::move(slivers);
-      }
+      const std::vector<Event> events = next_events(round);
       if (events.empty()) {
         result_.unresolved.reset();
         break;
       }
       result_.any = true;
       result_.unresolved = place_of(events.front());
-      if (round + 1 == Imprint::max_rounds) break;
+      if (round + 1 == rounds()) break;
       if (events.front().kind == Event::Kind::points) {
         merge(events);
         continue;
@@ -89,6 +83,27 @@ class Imprinter : private ImprintState {
     Index point;
     bool operator<(const OnEdge& o) const { return share != o.share ? share < o.share : point < o.point; }
   };
+
+  /// All that a round does.
+  std::vector<Event> next_events(int round) {
+    std::vector<Event> events = find_events();
+    std::vector<Event> diagonals = take_diagonals(events);
+    if (round >= Imprint::first_round_of_slivers && !events.empty()) {
+      std::erase_if(events, [&](const Event& e) { return passes_common_point(e); });
+      // A curve that three surfaces share may have kinks of up to the tolerance. A sliver at a kink, which
+      // only some of them have, would make the others cross forever.
+      if (!events.empty())
+        if (std::vector<Event> slivers = find_slivers(tolerance_); !slivers.empty()) return slivers;
+    }
+    if (!events.empty()) return events;
+    events = find_slivers(Imprint::flat_share * tolerance_);
+    if (events.empty()) events = find_slivers(Imprint::fold_reach * tolerance_, true);
+    if (events.empty()) events = std::move(diagonals);
+    clean_rounds_ += events.empty() ? 0 : 1;
+    return events;
+  }
+
+  int rounds() const { return Imprint::max_rounds + std::min(clean_rounds_, Imprint::max_clean_rounds); }
 
   bool have_common_points() const {
     return std::any_of(pairs_.begin(), pairs_.end(), [&](const Edge& pair) {
@@ -211,6 +226,7 @@ class Imprinter : private ImprintState {
       if (inserted++ % ComplexGrains::pairs == 0) throw_if_stopped();
       switch (e.kind) {
         case Event::Kind::points:
+        case Event::Kind::diagonals:
           break;
         case Event::Kind::point_on_edge: {
           const auto [share, squared] = foot_on(at(e.point), at(e.first[0]), at(e.first[1]));
@@ -405,6 +421,7 @@ class Imprinter : private ImprintState {
 
   ImprintedSurfaces result_;
   std::size_t first_new_ = 0;
+  int clean_rounds_ = 0;              ///< those so far that only removed triangles
   std::vector<std::uint32_t> owner_;  ///< earliest surface on which each point lies
 };
 

@@ -27,6 +27,9 @@ struct ComplexTuning {
     /// Rounds until two surfaces have only points and edges in common: two to four in general, more where a
     /// tolerance is near the size of facets, and never ending where it is above it.
     static constexpr int max_rounds = 16;
+    /// Further rounds, in which only triangles go that are flat or turned over: one after the other where
+    /// they form a fan.
+    static constexpr int max_clean_rounds = 16;
     /// Round from which triangles flatter than the tolerance go first: without them it needs two to four.
     static constexpr int first_round_of_slivers = 4;
     /// Limits of new points: in any case, and for each pair of triangles whose boxes meet at first. Crossing
@@ -50,6 +53,9 @@ struct ComplexTuning {
     /// A triangle whose height is below this, in tolerances, is flat: its sides could not be told apart. With
     /// the default tolerance 1e-9 diagonals, far above rounding.
     static constexpr double flat_share = 1e-4;
+    /// Height up to which a triangle that moves of points have turned over is removed, tolerances: a point
+    /// may move by one, and an edge beside it, too.
+    static constexpr double fold_reach = 2;
     /// Common points of two triangles lie on the line in which their planes cross within this, in tolerances.
     static constexpr double line_reach = 3;
   };
