@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/features/edge_uses.h"
 #include "common/geometry/morton.h"
 #include "common/geometry/point_triangle.h"
 #include "common/geometry/triangle_distance.h"
@@ -55,6 +56,19 @@ ContactZone::Distance away_from(const Vec3& away, double length, const Vec3& nor
 
 }  // namespace
 
+std::vector<std::array<Index, 2>> touching_edges(const LabelledComplex& complex) {
+  std::vector<Triangle> outer;
+  for (const LabelledComplex::Face& f : complex.faces)
+    if (f.behind == outside_region || f.front == outside_region) outer.push_back(f.ids);
+  const std::vector<EdgeUse> uses = edge_uses(outer, {});
+  std::vector<std::array<Index, 2>> edges;
+  for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
+    while (j < uses.size() && uses[j].key == uses[i].key) ++j;
+    if (j - i > 2) edges.push_back(ends_of(uses[i].key));
+  }
+  return edges;
+}
+
 ContactZone::ContactZone(const LabelledComplex& complex, const GridFrame& voxels) {
   std::vector<Vec3> points;
   points.reserve(complex.points.size());
@@ -76,8 +90,22 @@ ContactZone::ContactZone(const LabelledComplex& complex, const GridFrame& voxels
   faces_.reserve(order.size());
   for (const Index i : order) faces_.push_back(faces[i]);
 
+  add_touching_edges(complex, points);
   add_junctions(complex, points, voxels.cells);
   add_narrow_parts(voxels.cells);
+}
+
+void ContactZone::add_touching_edges(const LabelledComplex& complex, const std::vector<Vec3>& points) {
+  std::vector<ProjectionTree::Item> items;
+  for (const auto& [a, b] : touching_edges(complex)) items.push_back({{a, b, b}, {}});
+  if (!items.empty()) touching_ = ProjectionTree(points, std::move(items));
+}
+
+double ContactZone::touching_thickness(const Vec3& point) const {
+  if (touching_.empty()) return 0;
+  const auto hit = touching_.nearest_of(point, Zone::reach, [](const ProjectionTree::Item&) { return true; });
+  if (!hit) return 0;
+  return Zone::touching_thickness * (1 - (hit->point - point).squaredNorm() / (Zone::reach * Zone::reach));
 }
 
 void ContactZone::add_junctions(const LabelledComplex& complex, const std::vector<Vec3>& points,
@@ -198,7 +226,8 @@ std::pair<const ContactZone::Face*, Vec3> ContactZone::nearest_face(const Vec3& 
 }
 
 std::optional<ContactZone::Narrow> ContactZone::narrow(const Vec3& point, const Nearest& at) const {
-  const double limit = Zone::widest_narrow - at.distance.value;
+  const double touching = at.region == outside_region ? touching_thickness(point) : 0;
+  const double limit = std::max(Zone::widest_narrow, touching) - at.distance.value;
   if (!(limit > 0)) return {};
   const auto [farther, away] = nearest_face(
       point, limit, [&](const Face& f) { return f.bounds(at.region) && f.across(at.region) != at.across; });
@@ -206,11 +235,11 @@ std::optional<ContactZone::Narrow> ContactZone::narrow(const Vec3& point, const 
   const Distance distance =
       away_from(away, away.norm(), farther->front == at.region ? farther->normal : Vec3(-farther->normal));
   const double cosine = distance.gradient.dot(at.distance.gradient);
-  if (cosine > Zone::facing) return {};
+  if (cosine > Zone::facing && !(touching > 0)) return {};
   const double thickness = at.distance.value + distance.value;
-  const double share = std::min(1.0, (Zone::facing - cosine) / (Zone::facing - Zone::facing_entirely));
-  const double smallest =
-      share * (at.region == outside_region ? Zone::min_thickness : Zone::min_refined_thickness);
+  const double share = std::clamp((Zone::facing - cosine) / (Zone::facing - Zone::facing_entirely), 0.0, 1.0);
+  const double smallest = std::max(
+      touching, share * (at.region == outside_region ? Zone::min_thickness : Zone::min_refined_thickness));
   return Narrow{farther->across(at.region),
                 distance,
                 thickness,
