@@ -10,7 +10,6 @@
 
 #include "common/features/edge_uses.h"
 #include "common/geometry/projection_tree.h"
-#include "mesher/complex/contact_zone.h"
 #include "mesher/domain/material_field.h"
 #include "mesher/tuning/cell_tuning.h"
 #include "mesher/tuning/complex_tuning.h"
@@ -189,9 +188,9 @@ void report_features(const MesherInput& input, const std::vector<SurfacePatches>
 }
 
 /// The lines in which bodies touch without a common face.
-ProjectionTree touching_lines(const LabelledComplex& complex) {
+ProjectionTree touching_lines(const ComplexPatches& complex) {
   std::vector<ProjectionTree::Item> segments;
-  for (const auto& [a, b] : touching_edges(complex)) segments.push_back({{a, b, b}, {}});
+  for (const auto& [a, b] : complex.touching) segments.push_back({{a, b, b}, {}});
   return {complex.points, std::move(segments)};
 }
 
@@ -210,7 +209,7 @@ void report_complex_creases(const MesherInput& input, const ComplexPatches& foun
     creases.add(find_creases(input.complex->points, triangles[s], of_triangles[s],
                              CellTuning::Patches::corner_reach * report.cell_size, found.rough),
                 input.complex->points);
-  if (const ProjectionTree lines = touching_lines(*input.complex); !lines.empty())
+  if (const ProjectionTree lines = touching_lines(found); !lines.empty())
     creases = away_from(creases, lines, CellTuning::Patches::rim_reach * report.cell_size);
   report.creases.add(creases);
 }
