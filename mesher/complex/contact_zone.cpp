@@ -56,15 +56,23 @@ ContactZone::Distance away_from(const Vec3& away, double length, const Vec3& nor
 
 }  // namespace
 
-std::vector<std::array<Index, 2>> touching_edges(const LabelledComplex& complex) {
-  std::vector<Triangle> outer;
-  for (const LabelledComplex::Face& f : complex.faces)
-    if (f.behind == outside_region || f.front == outside_region) outer.push_back(f.ids);
-  const std::vector<EdgeUse> uses = edge_uses(outer, {});
-  std::vector<std::array<Index, 2>> edges;
+std::vector<TouchingEdge> touching_edges(const LabelledComplex& complex) {
+  std::vector<Triangle> triangles;
+  for (const LabelledComplex::Face& f : complex.faces) triangles.push_back(f.ids);
+  const std::vector<EdgeUse> uses = edge_uses(triangles, {});
+  std::vector<TouchingEdge> edges;
   for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
-    while (j < uses.size() && uses[j].key == uses[i].key) ++j;
-    if (j - i > 2) edges.push_back(ends_of(uses[i].key));
+    std::vector<RegionIndex> regions;
+    bool have_common_face = false;
+    for (; j < uses.size() && uses[j].key == uses[i].key; ++j) {
+      const LabelledComplex::Face& f = complex.faces[uses[j].triangle];
+      have_common_face |= f.behind != outside_region && f.front != outside_region;
+      regions.push_back(f.behind == outside_region ? f.front : f.behind);
+    }
+    if (have_common_face || regions.size() <= 2) continue;
+    std::sort(regions.begin(), regions.end());
+    regions.erase(std::unique(regions.begin(), regions.end()), regions.end());
+    if (regions.size() > 1) edges.push_back({ends_of(uses[i].key), std::move(regions)});
   }
   return edges;
 }
@@ -97,13 +105,24 @@ ContactZone::ContactZone(const LabelledComplex& complex, const GridFrame& voxels
 
 void ContactZone::add_touching_edges(const LabelledComplex& complex, const std::vector<Vec3>& points) {
   std::vector<ProjectionTree::Item> items;
-  for (const auto& [a, b] : touching_edges(complex)) items.push_back({{a, b, b}, {}});
+  for (TouchingEdge& edge : touching_edges(complex)) {
+    const auto& [a, b] = edge.ends;
+    if (touching_regions_.empty() || touching_regions_.back() != edge.regions)
+      touching_regions_.push_back(std::move(edge.regions));
+    items.push_back({{a, b, b}, {static_cast<std::uint32_t>(touching_regions_.size() - 1), 0, 0}});
+  }
   if (!items.empty()) touching_ = ProjectionTree(points, std::move(items));
 }
 
-double ContactZone::touching_thickness(const Vec3& point) const {
+double ContactZone::touching_thickness(const Vec3& point, RegionIndex first, RegionIndex second) const {
   if (touching_.empty()) return 0;
-  const auto hit = touching_.nearest_of(point, Zone::reach, [](const ProjectionTree::Item&) { return true; });
+  const auto hit = touching_.nearest_of(point, Zone::reach, [&](const ProjectionTree::Item& item) {
+    const std::vector<RegionIndex>& regions = touching_regions_[item.kind[0]];
+    const auto touches = [&](RegionIndex region) {
+      return region == outside_region || std::binary_search(regions.begin(), regions.end(), region);
+    };
+    return touches(first) && touches(second);
+  });
   if (!hit) return 0;
   return Zone::touching_thickness * (1 - (hit->point - point).squaredNorm() / (Zone::reach * Zone::reach));
 }
@@ -226,12 +245,13 @@ std::pair<const ContactZone::Face*, Vec3> ContactZone::nearest_face(const Vec3& 
 }
 
 std::optional<ContactZone::Narrow> ContactZone::narrow(const Vec3& point, const Nearest& at) const {
-  const double touching = at.region == outside_region ? touching_thickness(point) : 0;
+  double touching = at.region == outside_region ? touching_thickness(point, at.across, outside_region) : 0;
   const double limit = std::max(Zone::widest_narrow, touching) - at.distance.value;
   if (!(limit > 0)) return {};
   const auto [farther, away] = nearest_face(
       point, limit, [&](const Face& f) { return f.bounds(at.region) && f.across(at.region) != at.across; });
   if (!farther) return {};
+  if (touching > 0) touching = touching_thickness(point, at.across, farther->across(at.region));
   const Distance distance =
       away_from(away, away.norm(), farther->front == at.region ? farther->normal : Vec3(-farther->normal));
   const double cosine = distance.gradient.dot(at.distance.gradient);

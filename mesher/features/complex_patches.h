@@ -32,7 +32,7 @@ struct ComplexPatches {
   /// Surface region of the input that each patch belongs to, or none; see FaceGroups.
   std::vector<SurfaceRegion> groups;
   std::vector<std::uint8_t> rough;             ///< of each patch, see SurfacePatches::rough
-  std::vector<std::array<Index, 2>> touching;  ///< touching_edges(): no creases
+  std::vector<std::array<Index, 2>> touching;  ///< edges of touching_edges(), ascending: no creases
 };
 
 /// The patches of inner sheets.

@@ -147,6 +147,7 @@ double minimise(Distortion& distortion, double epsilon) {
 
 bool untangle(std::vector<Vec3>& points, std::span<const Tet> tets, std::span<const std::uint8_t> is_locked) {
   Distortion distortion(points, tets, is_locked);
+  if (!(distortion.size() > 0)) return false;
   double epsilon = 1;
   for (int round = 0; round < Limits::max_rounds; ++round) {
     const double before = distortion.value(epsilon, nullptr), after = minimise(distortion, epsilon);
