@@ -17,6 +17,9 @@ struct ComplexTuning {
   struct Contact {
     /// Bodies must be larger than this, in tolerances, or little would be left of them.
     static constexpr double min_body = 10;
+    /// Volume that moves within the tolerance may change, in tolerances times the area of a body's contacts,
+    /// and of all of it: triangles beside contacts tilt when their points move.
+    static constexpr double moved_contact = 1.1, moved_area = 0.2;
     /// Gaps and overlaps below this, in tolerances, are rounding.
     static constexpr double min_gap = 1e-6;
   };
