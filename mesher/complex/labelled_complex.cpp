@@ -54,7 +54,7 @@ class ComplexBuilder {
     for (const Step step :
          {&ComplexBuilder::weld, &ComplexBuilder::find_windings, &ComplexBuilder::measure_cells,
           &ComplexBuilder::find_overlaps, &ComplexBuilder::label_cells, &ComplexBuilder::dissolve_thin_cells,
-          &ComplexBuilder::assemble}) {
+          &ComplexBuilder::assemble, &ComplexBuilder::find_torn}) {
       throw_if_stopped();
       (this->*step)();
     }
