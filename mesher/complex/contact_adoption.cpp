@@ -132,7 +132,8 @@ class PairAdopter {
       const Index first = numbered(a);
       rim_.segments.push_back({first, numbered(b)});
     }
-    return std::none_of(contacts_.begin(), contacts_.end(), [](const Contact& c) { return c.border.empty(); });
+    return std::none_of(contacts_.begin(), contacts_.end(),
+                        [](const Contact& c) { return c.border.empty(); });
   }
 
   void list_edges() {

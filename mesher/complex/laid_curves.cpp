@@ -35,7 +35,7 @@ struct Cuts {
 class CurveLayer {
  public:
   CurveLayer(std::span<const Triangle> surface, double tolerance, std::vector<Vec3>& points)
-      : tolerance_(tolerance), points_(points) {
+      : tolerance_(tolerance), snap_(Adoption::snap * tolerance), points_(points) {
     out_.triangles.assign(surface.begin(), surface.end());
     for (Index t = 0; t < surface.size(); ++t) out_.source.push_back(t);
   }
@@ -83,7 +83,7 @@ class CurveLayer {
   /// The surface's point at a position on it, a new one unless one is near.
   Index point_at(const TrianglePlaces::Place& place, Cuts& cuts, std::vector<Index>& added) {
     const Triangle& ids = out_.triangles[place.triangle];
-    double least = tolerance_ * tolerance_;
+    double least = snap_ * snap_;
     Index best = no_index;
     const auto look_at = [&](Index p) {
       const double squared = (at(p) - place.point).squaredNorm();
@@ -135,7 +135,7 @@ class CurveLayer {
         if (normal(out_.triangles[t]).dot(frame.up) > 0) near.push_back(t);
       bool ok = false;
       for (int step = 0; step < Adoption::snap_steps && !ok; ++step) {
-        const double snap = tolerance_ * std::pow(Adoption::snap_step, step);
+        const double snap = snap_ * std::pow(Adoption::snap_step, step);
         ok = add_chain(links(p, q, near, frame, snap), near, cuts);
       }
       if (!ok) return false;
@@ -250,7 +250,7 @@ class CurveLayer {
     return true;
   }
 
-  double tolerance_;
+  double tolerance_, snap_;
   std::vector<Vec3>& points_;
   LaidCurves out_;
 };

@@ -67,7 +67,10 @@ struct ComplexTuning {
     static constexpr double reach = 3;
     /// Least area of a contact, squared tolerances: smaller ones are left to the imprint.
     static constexpr double min_area = 16;
-    /// A segment runs through points of the surface within the tolerance, unless thin triangles lie between;
+    /// Distance within which what is laid on a surface joins its points and edges, tolerances: smaller ones
+    /// make thinner triangles, larger ones kinks in the border of a contact.
+    static constexpr double snap = 0.25;
+    /// A segment runs through points of the surface within this distance, unless thin triangles lie between;
     /// then within this share of it, and so on.
     static constexpr double snap_step = 0.25;
     static constexpr int snap_steps = 4;
