@@ -9,7 +9,6 @@
 #include "common/geometry/box_tree.h"
 #include "common/geometry/ray_crossing.h"
 #include "common/mesh/disjoint_sets.h"
-#include "mesher/complex/imprint_state.h"
 #include "mesher/complex/surface_cells.h"
 #include "mesher/tuning/complex_tuning.h"
 #include "tetwright/resources.h"
@@ -48,7 +47,8 @@ class ComplexBuilder {
   ComplexResult build() {
     const double bytes =
         ComplexTuning::Cells::bytes_per_triangle * static_cast<double>(imprinted_.triangles.size());
-    require_imprint_memory(bytes);
+    require_memory(bytes, "finding which body each part of space belongs to",
+                   "free some, give a larger --memory-limit, or give surfaces of fewer triangles");
     result_.peak_bytes = std::max(bytes, imprinted_.peak_bytes);
     using Step = void (ComplexBuilder::*)();
     for (const Step step :

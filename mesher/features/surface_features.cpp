@@ -131,7 +131,7 @@ void give_up_where_gaps_are_closed(const MesherInput& input, const MesherReport&
   }
 }
 
-/// The edges with one triangle, around holes that are not flat.
+/// The edges with one triangle, around holes that are not flat: the mesh rounds into their caps.
 ProjectionTree open_rims(const RepairedSurface& surface) {
   std::vector<ProjectionTree::Item> segments;
   const std::vector<EdgeUse> uses = edge_uses(surface.triangles, {});
@@ -143,10 +143,10 @@ ProjectionTree open_rims(const RepairedSurface& surface) {
   return {surface.points, std::move(segments)};
 }
 
-/// Leaves out what is nearer to open rims than `reach`, where the mesh rounds into the cap of a hole.
-CreaseCurves away_from_rims(const CreaseCurves& creases, const ProjectionTree& rims, double reach) {
+/// Leaves out what is nearer to some curves than `reach`.
+CreaseCurves away_from(const CreaseCurves& creases, const ProjectionTree& curves, double reach) {
   CreaseCurves kept;
-  const auto is_near = [&](const Vec3& p) { return rims.any_within(p, reach); };
+  const auto is_near = [&](const Vec3& p) { return curves.any_within(p, reach); };
   for (const auto& [a, b] : creases.segments) {
     const Vec3 &from = creases.points[a], &to = creases.points[b];
     // Long segments lose only their ends.
@@ -178,8 +178,7 @@ void report_features(const MesherInput& input, const std::vector<SurfacePatches>
                                CellTuning::Patches::corner_reach * report.cell_size, patches[b].rough),
                   surface.points);
       if (surface.closed < surface.triangles.size())
-        creases =
-            away_from_rims(creases, open_rims(surface), CellTuning::Patches::rim_reach * report.cell_size);
+        creases = away_from(creases, open_rims(surface), CellTuning::Patches::rim_reach * report.cell_size);
       report.creases.add(creases);
     }
     report.features.push_back({input.bodies[b].name, patches[b]});
@@ -188,7 +187,15 @@ void report_features(const MesherInput& input, const std::vector<SurfacePatches>
   }
 }
 
-/// Reports the creases of a complex: for each sheet, those between its patches.
+/// The lines in which bodies touch without a common face.
+ProjectionTree touching_lines(const ComplexPatches& complex) {
+  std::vector<ProjectionTree::Item> segments;
+  for (const auto& [a, b] : complex.touching) segments.push_back({{a, b, b}, {}});
+  return {complex.points, std::move(segments)};
+}
+
+/// Reports the creases of a complex: for each sheet, those between its patches. Omits those at lines in which
+/// bodies touch, where the mesh joins them over a few cells.
 void report_complex_creases(const MesherInput& input, const ComplexPatches& found, MesherReport& report) {
   std::vector<std::vector<Triangle>> triangles(found.sheets.size());
   std::vector<std::vector<std::uint16_t>> of_triangles(found.sheets.size());
@@ -197,10 +204,14 @@ void report_complex_creases(const MesherInput& input, const ComplexPatches& foun
     triangles[sheet].push_back(found.triangles[t]);
     of_triangles[sheet].push_back(found.patches[t]);
   }
+  CreaseCurves creases;
   for (std::size_t s = 0; s < triangles.size(); ++s)
-    report.creases.add(find_creases(input.complex->points, triangles[s], of_triangles[s],
-                                    CellTuning::Patches::corner_reach * report.cell_size, found.rough),
-                       input.complex->points);
+    creases.add(find_creases(input.complex->points, triangles[s], of_triangles[s],
+                             CellTuning::Patches::corner_reach * report.cell_size, found.rough),
+                input.complex->points);
+  if (const ProjectionTree lines = touching_lines(found); !lines.empty())
+    creases = away_from(creases, lines, CellTuning::Patches::rim_reach * report.cell_size);
+  report.creases.add(creases);
 }
 
 /// Drops creases that later bodies carve away, and creases near curves where three regions meet, which are
