@@ -19,7 +19,7 @@ namespace {
 using Adoption = ComplexTuning::Adoption;
 using Edge = std::array<Index, 2>;
 
-/// What divides a surface's triangles.
+/// Points and segments that divide a surface's triangles.
 struct Cuts {
   std::map<Edge, std::map<double, Index>> on_edges;  ///< by ascending edge and share
   std::map<Index, std::vector<Index>> inside;        ///< by triangle

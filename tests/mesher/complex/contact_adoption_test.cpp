@@ -13,6 +13,7 @@
 #include "tests/mesher/complex/complex_measures.h"
 #include "tests/mesher/complex/random_bodies.h"
 #include "tests/mesher/test_surfaces.h"
+#include "tetwright/mesher_input.h"
 
 namespace tetwright {
 namespace {
@@ -131,6 +132,20 @@ INSTANTIATE_TEST_SUITE_P(Walls, Lenses,
                                          Lens{40, 20, 48, 8, 0.7, 0.7, 0.25, 0.05, 0},
                                          Lens{72, 15, 30, 5, 0.4, 0.6, 0.12, 0.02, 1.1},
                                          Lens{32, 7, 56, 6, 0.6, 0.6, 0.3, 0.07, 0.7}));
+
+/// The imprint alone leaves surfaces that cross at the rim.
+TEST(ContactAdoption, JoinsBodiesIfTheToleranceIsGiven) {
+  const Lens lens{48, 12, 40, 8, 0.6, 0.8, 0.15, 0, 0};
+  const TriangleMesh tube = tube_of(lens), own = mesh_of(lens);
+  ContactOptions contact;
+  contact.tolerance = 1.5 * misfit_of(lens, own);
+  const MesherInput input = make_mesher_input({{"tube", 1, tube, "tube.off"}, {"lens", 2, own, "lens.off"}},
+                                              {}, NestedRule::automatic, contact);
+  EXPECT_TRUE(input.complex);
+  EXPECT_TRUE(input.findings.empty());
+  ASSERT_EQ(input.contacts.size(), 1U);
+  EXPECT_EQ(input.contacts[0].pieces, 1U);
+}
 
 TEST(ContactAdoption, LeavesBodiesApartAsTheyAre) {
   const SurfaceSoup soup = soup_of({make_box({0, 0, 0}, {1, 1, 1}), make_box({1.1, 0, 0}, {2, 1, 1})});
