@@ -27,12 +27,12 @@ class Imprinter : private ImprintState {
   Imprinter(const SurfaceSoup& soup, double tolerance, Progress* progress)
       : ImprintState(tolerance, progress) {
     points_ = soup.points;
-    owner_.assign(soup.points.size(), 0);
+    owner_.assign(soup.points.size(), no_index);
     for (Index t = 0; t < soup.triangles.size(); ++t) {
       triangles_.push_back({soup.triangles[t], t, soup.surface[t], true, true});
       const auto& [a, b, c] = soup.triangles[t];
       normals_.push_back((at(b) - at(a)).cross(at(c) - at(a)));
-      for (const Index p : soup.triangles[t]) owner_[p] = soup.surface[t];
+      for (const Index p : soup.triangles[t]) owner_[p] = std::min(owner_[p], soup.surface[t]);
     }
     first_new_ = soup.points.size();
   }

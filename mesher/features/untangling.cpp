@@ -155,7 +155,7 @@ bool untangle(std::vector<Vec3>& points, std::span<const Tet> tets, std::span<co
     if (least > Limits::min_determinant) return true;
     const double gain = std::max(1 - after / before, Limits::min_reduction);
     const double aim = (1 - gain) * Distortion::regularised(least, epsilon);
-    epsilon = least < aim ? 2 * std::sqrt(aim * (aim - least)) : Limits::least_epsilon;
+    epsilon = least < aim ? 2 * std::sqrt(aim * (aim - least)) : Limits::min_epsilon;
   }
   return distortion.min_determinant() > 0;
 }

@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <string>
 #include <utility>
 
 #include "common/message_text.h"
+#include "mesher/complex/contact_adoption.h"
 #include "mesher/complex/labelled_complex.h"
 #include "mesher/input/contact_groups.h"
 #include "mesher/input/surface_measures.h"
@@ -196,13 +198,28 @@ void join_bodies(MesherInput& input, const SheetSoup& sheets, const ContactOptio
   SoupSheets in_soup;
   in_soup.count = input.sheets.size();
   if (!sheets.empty()) sheets.append_to(soup, static_cast<std::uint32_t>(input.bodies.size()), in_soup.sheet);
-  const ImprintedSurfaces imprinted = imprint_surfaces(soup, tolerance, progress);
+  ImprintedSurfaces imprinted = imprint_surfaces(soup, tolerance, progress);
   if (!imprinted.any && sheets.empty()) return;
   for (const MesherInput::Body& body : input.bodies)
     if (!is_closed(body.surface)) {
       not_joined(body.file, "its surface is open; contacts are accurate to a cell", body.surface.points[0]);
       return;
     }
+  const auto labelled = [&](const ImprintedSurfaces& surfaces) {
+    return build_complex(surfaces, soup, input.bodies.size(), tolerance, options.overlap, in_soup, progress);
+  };
+  std::optional<ComplexResult> complex;
+  if (!imprinted.unresolved) complex = labelled(imprinted);
+  // Only a tolerance that was given can be above the size of facets.
+  if (options.tolerance && (!complex || complex->inconsistent)) {
+    if (auto adopted = imprint_adopted(soup, input.bodies.size(), tolerance, progress)) {
+      ComplexResult again = labelled(*adopted);
+      if (!again.inconsistent) {
+        imprinted = std::move(*adopted);
+        complex = std::move(again);
+      }
+    }
+  }
   if (imprinted.too_many_points)
     throw InputError(input.bodies.back().file, 0,
                      "at " + place_text(*imprinted.unresolved) +
@@ -217,8 +234,7 @@ void join_bodies(MesherInput& input, const SheetSoup& sheets, const ContactOptio
                *imprinted.unresolved);
     return;
   }
-  ComplexResult found =
-      build_complex(imprinted, soup, input.bodies.size(), tolerance, options.overlap, in_soup, progress);
+  ComplexResult& found = *complex;
   input.joined_bytes = found.peak_bytes;
   if (found.inconsistent) {
     not_joined(input.bodies.back().file, "a surface crosses itself there; contacts are accurate to a cell",

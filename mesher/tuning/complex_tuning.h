@@ -63,6 +63,25 @@ struct ComplexTuning {
     static constexpr double line_reach = 3;
   };
 
+  /// Contacts for which a body adopts triangles of an earlier one.
+  struct Adoption {
+    /// Distances of what is laid on a surface or adopted, tolerances: all of it is within one, and the ends
+    /// of segments move by up to one along the surface.
+    static constexpr double reach = 3;
+    /// Least area of a contact, squared tolerances: smaller ones are left to the imprint.
+    static constexpr double min_area = 16;
+    /// Distance within which what is laid on a surface joins its points and edges, tolerances: smaller ones
+    /// make thinner triangles, larger ones kinks in the border of a contact.
+    static constexpr double snap = 0.25;
+    /// A segment runs through points of the surface within this distance, unless thin triangles lie between;
+    /// then within this share of it, and so on.
+    static constexpr double snap_step = 0.25;
+    static constexpr int snap_steps = 4;
+    /// Least distance between points on an edge, as a share of it: twice what their division can tell apart
+    /// (TriangleSubdivision::add_on_edge()).
+    static constexpr double min_share = 2e-12;
+  };
+
   struct Cells {
     /// Bytes at the peak for each triangle while cells are found and labelled, with what imprinting leaves.
     static constexpr double bytes_per_triangle = 600;

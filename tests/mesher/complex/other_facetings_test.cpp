@@ -3,11 +3,11 @@
 
 #include <cmath>
 #include <numbers>
-#include <set>
 
 #include "common/geometry/self_intersection.h"
 #include "mesher/complex/labelled_complex.h"
 #include "mesher/complex/surface_imprint.h"
+#include "tests/mesher/complex/complex_measures.h"
 #include "tests/mesher/complex/random_bodies.h"
 #include "tests/mesher/test_surfaces.h"
 #include "tetwright/resources.h"
@@ -82,32 +82,6 @@ double polygon_area(int facets) {
 /// Half more than the largest distance between the facets, which is below the larger sagitta.
 double tolerance_of(const Faceting& f) {
   return 1.5 * radius * (1 - std::cos(std::numbers::pi / std::min(f.hole_facets, f.pin_facets)));
-}
-
-double volume_of(const LabelledComplex& complex, RegionIndex region) {
-  double out = 0;
-  for (const LabelledComplex::Face& f : complex.faces) {
-    const auto& [a, b, c] = f.ids;
-    const double volume = complex.points[a].dot(complex.points[b].cross(complex.points[c])) / 6;
-    out += (f.behind == region ? volume : 0) - (f.front == region ? volume : 0);
-  }
-  return out;
-}
-
-int contact_euler(const LabelledComplex& complex) {
-  std::set<Index> points;
-  std::set<std::array<Index, 2>> edges;
-  int faces = 0;
-  for (Index f = 0; f < complex.faces.size(); ++f) {
-    if (!complex.is_contact(f)) continue;
-    ++faces;
-    const Triangle& t = complex.faces[f].ids;
-    for (std::size_t k = 0; k < 3; ++k) {
-      points.insert(t[k]);
-      edges.insert(ascending_edge(t[k], t[(k + 1) % 3]));
-    }
-  }
-  return static_cast<int>(points.size()) - static_cast<int>(edges.size()) + faces;
 }
 
 class PinFacetings : public testing::TestWithParam<Faceting> {};
