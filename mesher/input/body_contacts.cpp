@@ -214,7 +214,7 @@ void join_bodies(MesherInput& input, const SheetSoup& sheets, const ContactOptio
   if (options.tolerance && (!complex || complex->inconsistent)) {
     if (auto adopted = imprint_adopted(soup, input.bodies.size(), tolerance, progress)) {
       ComplexResult again = labelled(*adopted);
-      if (!again.inconsistent) {
+      if (!again.inconsistent && !again.torn) {
         imprinted = std::move(*adopted);
         complex = std::move(again);
       }
