@@ -235,6 +235,7 @@ struct FoundParts {
   std::vector<std::uint8_t> noisy;  ///< a flag for each triangle, or empty
   /// Parts before small ones were merged, or before all were merged as a staircase; or empty.
   std::vector<Index> before;
+  std::vector<SharpEdge> sharp;  ///< if PatchOptions::list_chains
 };
 
 CreaseChain::Fate fate_of(const InnerEdge& e, const FoundParts& result) {
@@ -301,12 +302,11 @@ FoundParts find_parts(std::span<const Vec3> points, std::span<const Triangle> tr
       (options.angle.rule == Rule::automatic ? automatic_angle : options.angle.degrees) * degree;
   find_parts(points, triangles, options, edges, on_border, sharp, result);
   if (!options.list_chains) return result;
-  std::vector<SharpEdge> listed;
   for (const InnerEdge& e : edges)
-    if (e.turn > sharp) listed.push_back({e.ends, e.length, e.turn, fate_of(e, result)});
+    if (e.turn > sharp) result.sharp.push_back({e.ends, e.length, e.turn, fate_of(e, result)});
   for (const InnerEdge& e : edges_between_groups(points, triangles, uses))
-    if (e.turn > sharp) listed.push_back({e.ends, e.length, e.turn, CreaseChain::Fate::kept_groups});
-  result.found.chains = chains_of(points, listed);
+    if (e.turn > sharp)
+      result.sharp.push_back({e.ends, e.length, e.turn, CreaseChain::Fate::kept_groups});
   return result;
 }
 
@@ -333,6 +333,7 @@ SurfacePatches find_patches(std::span<const Vec3> points, std::span<const Triang
                             const PatchOptions& options, std::span<const std::uint32_t> groups,
                             const std::string& file) {
   FoundParts found = find_parts(points, triangles, options, groups);
+  found.found.chains = chains_of(points, found.sharp);
   // Number the patches in the order of their first triangles.
   std::vector<std::uint32_t> numbers(triangles.size(), no_index);
   std::uint32_t count = 0;
@@ -348,9 +349,14 @@ SurfacePatches find_patches(std::span<const Vec3> points, std::span<const Triang
 }
 
 CreaseChains find_crease_chains(std::span<const Vec3> points, std::span<const Triangle> triangles,
-                                PatchOptions options, std::span<const std::uint32_t> groups) {
+                                PatchOptions options, std::span<const std::uint32_t> groups,
+                                const std::function<bool(const Vec3&)>& is_given_up, double piece) {
   options.list_chains = true;
-  return std::move(find_parts(points, triangles, options, groups).found.chains);
+  FoundParts found = find_parts(points, triangles, options, groups);
+  if (!is_given_up) return chains_of(points, found.sharp);
+  std::vector<Vec3> all(points.begin(), points.end());
+  give_up_edges(all, found.sharp, piece, is_given_up);
+  return chains_of(all, found.sharp);
 }
 
 SurfacePatches find_mesh_patches(TetMesh& mesh, const FeatureAngle& angle, const std::string& file) {
@@ -366,6 +372,7 @@ SurfacePatches find_mesh_patches(TetMesh& mesh, const FeatureAngle& angle, const
                          .first->second);
   }
   FoundParts found = find_parts(mesh.points, triangles, {angle, 0, true}, groups);
+  found.found.chains = chains_of(mesh.points, found.sharp);
   std::map<MaterialPair, std::map<Index, std::uint16_t>> of_pair;
   const std::map<InterfacePatch, SurfaceRegion> given = std::move(mesh.patch_groups);
   mesh.patch_groups.clear();

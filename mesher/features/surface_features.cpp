@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "common/features/crease_pieces.h"
 #include "common/features/edge_uses.h"
 #include "common/geometry/projection_tree.h"
 #include "mesher/domain/material_field.h"
@@ -27,6 +28,12 @@ double patch_cell(const RepairedSurface& surface, const MesherOptions& options, 
   return std::clamp(mean_thickness, std::ldexp(cell, -halvings), cell);
 }
 
+/// How the patches of a body are found.
+PatchOptions patch_options(const MesherInput::Body& body, const MesherOptions& options, double cell) {
+  const double shown = patch_cell(body.surface, options, cell);
+  return {options.feature_angle, CellTuning::Patches::min_area * shown * shown, true};
+}
+
 /// The patches of all bodies.
 std::vector<SurfacePatches> patches_of_bodies(const MesherInput& input, const MesherOptions& options,
                                               double cell) {
@@ -35,27 +42,14 @@ std::vector<SurfacePatches> patches_of_bodies(const MesherInput& input, const Me
   std::vector<SurfacePatches> patches;
   for (const MesherInput::Body& body : input.bodies) {
     const RepairedSurface& surface = body.surface;
-    const double shown = patch_cell(surface, options, cell);
-    PatchOptions patch_options{options.feature_angle, CellTuning::Patches::min_area * shown * shown, true};
-    // Intersections of parts are creases that are not edges of the surface.
-    const bool intersecting =
-        surface.intersects_itself && options.feature_angle.rule != FeatureAngle::Rule::off;
-    if (intersecting) patch_options.angle.rule = FeatureAngle::Rule::off;
-    SurfacePatches found =
-        find_patches(surface.points, surface.triangles, patch_options, surface.groups, body.file);
-    if (intersecting) {
-      found.verdict = SurfacePatches::Verdict::intersecting;
-      patch_options.angle = options.feature_angle;
-      found.chains = find_crease_chains(surface.points, surface.triangles, patch_options, surface.groups);
-      found.chains.give_up();
-    }
-    count += found.count;
+    patches.push_back(find_patches(surface.points, surface.triangles, patch_options(body, options, cell),
+                                   surface.groups, body.file));
+    count += patches.back().count;
     if (count > max_patches)
       throw InputError(
           body.file, 0,
           "the surfaces have more than " + std::to_string(max_patches) +
               " patches between sharp edges; use a larger --feature-angle, or --feature-angle off");
-    patches.push_back(std::move(found));
   }
   return patches;
 }
@@ -81,54 +75,65 @@ SheetPatches patches_of_sheets(const MesherInput& input, const MesherOptions& op
   return result;
 }
 
-/// Drops the creases of a body except the borders of groups.
-void give_up_creases(const MesherInput::Body& body, SurfacePatches& found) {
-  if (!found.any()) return;
-  PatchOptions options;
-  options.angle.rule = FeatureAngle::Rule::off;
-  CreaseChains chains = std::move(found.chains);
-  found = find_patches(body.surface.points, body.surface.triangles, options, body.surface.groups, body.file);
-  found.verdict = SurfacePatches::Verdict::meeting;
-  found.chains = std::move(chains);
-  found.chains.give_up();
-}
+using Causes = std::vector<GivenUpZone::Causes>;
 
-/// Drops the creases of surfaces that meet others. The curves in which they meet are accurate to half a cell
-/// only, and no well-shaped tets fit between these and exact creases.
-void give_up_where_surfaces_meet(const MesherInput& input, const TetMesh& mesh,
-                                 std::vector<SurfacePatches>& patches) {
+/// Adds the points where surfaces meet that are not joined. The curves in which they meet are accurate to half
+/// a cell only, and no well-shaped tets fit between these and exact creases.
+void add_meetings(const MesherInput& input, const TetMesh& mesh, Causes& causes) {
   if (input.bodies.size() == 1) return;
   std::map<MaterialTag, std::size_t> bodies;
   for (const MaterialLayer& layer : input.layers) bodies[layer.tag] = 0;
   for (std::size_t b = 0; b < input.bodies.size(); ++b) bodies[input.bodies[b].tag] = b;
   std::vector<const InterfaceTriangle*> first_at(mesh.points.size(), nullptr);
-  std::set<std::size_t> meeting;
-  const auto add = [&](const InterfaceTriangle& t) {
-    for (const MaterialOrOutside material : {MaterialOrOutside(t.material), t.other})
-      if (const auto body = material ? bodies.find(*material) : bodies.end(); body != bodies.end())
-        meeting.insert(body->second);
-  };
+  std::vector<std::uint8_t> is_junction(mesh.points.size(), 0);
   for (const InterfaceTriangle& t : mesh.interfaces)
     for (const Index p : t.ids) {
       if (!first_at[p]) first_at[p] = &t;
-      if (first_at[p]->pair() == t.pair()) continue;
-      add(*first_at[p]);
-      add(t);
+      is_junction[p] |= first_at[p]->pair() != t.pair();
     }
-  for (const std::size_t b : meeting) give_up_creases(input.bodies[b], patches[b]);
+  std::set<std::pair<std::size_t, Index>> meeting;
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    for (const Index p : t.ids) {
+      if (!is_junction[p]) continue;
+      for (const MaterialOrOutside material : {MaterialOrOutside(t.material), t.other})
+        if (const auto body = material ? bodies.find(*material) : bodies.end(); body != bodies.end())
+          meeting.insert({body->second, p});
+    }
+  for (const auto& [body, p] : meeting) causes[body].add(mesh.points[p]);
 }
 
-/// Drops the creases of surfaces whose own gaps are closed over more than a small part of their area, since
-/// such creases would lie inside the solid.
-void give_up_where_gaps_are_closed(const MesherInput& input, const MesherReport& report,
-                                   std::vector<SurfacePatches>& patches) {
+/// Where creases of bodies are given up.
+GivenUpZone find_given_up(const MesherInput& input, const std::vector<std::vector<Vec3>>& closed_gaps,
+                          const std::vector<SurfacePatches>& patches, const DenseMesh& dense) {
+  Causes causes(patches.size());
+  if (!input.complex) add_meetings(input, dense.mesh, causes);
   for (std::size_t b = 0; b < patches.size(); ++b) {
-    double closed = 0;
-    for (const ClosedGapReport& g : report.closed_gaps)
-      if (g.gap && g.name == input.bodies[b].name) closed += g.area;
-    if (closed > CellTuning::WallBudget::max_closed_share * input.bodies[b].surface.area)
-      give_up_creases(input.bodies[b], patches[b]);
+    for (const Vec3& p : closed_gaps[b]) causes[b].add(p);
+    if (input.bodies[b].surface.intersects_itself && patches[b].any())
+      add_self_crossings(input.bodies[b].surface, causes[b]);
+    if (!patches[b].any()) causes[b] = {};
   }
+  return {std::move(causes), CellTuning::GivenUp::reach * dense.report.cell_size};
+}
+
+/// Sets the fate of the sharp edges of a body in the zone. If no crease is left, the patches become those of
+/// groups.
+void give_up_creases(const MesherInput::Body& body, std::size_t number, const PatchOptions& options,
+                     const GivenUpZone& zone, SurfacePatches& found) {
+  using Fate = CreaseChain::Fate;
+  using Verdict = SurfacePatches::Verdict;
+  if (!zone.has(number) || found.verdict != Verdict::part) return;
+  const RepairedSurface& surface = body.surface;
+  CreaseChains chains = find_crease_chains(
+      surface.points, surface.triangles, options, surface.groups,
+      [&](const Vec3& p) { return zone.contains(p, number); }, zone.piece());
+  if (chains.total(Fate::kept).count == 0 && chains.total(Fate::given_up).count > 0) {
+    PatchOptions off;
+    off.angle.rule = FeatureAngle::Rule::off;
+    found = find_patches(surface.points, surface.triangles, off, surface.groups, body.file);
+    found.verdict = zone.has_only_crossings(number) ? Verdict::intersecting : Verdict::meeting;
+  }
+  found.chains = std::move(chains);
 }
 
 /// The edges with one triangle, around holes that are not flat.
@@ -143,43 +148,49 @@ ProjectionTree open_rims(const RepairedSurface& surface) {
   return {surface.points, std::move(segments)};
 }
 
-/// Leaves out what is nearer to open rims than `reach`, where the mesh rounds into the cap of a hole.
-CreaseCurves away_from_rims(const CreaseCurves& creases, const ProjectionTree& rims, double reach) {
+/// Leaves out what is in a region, and of long segments only the part there.
+/// \param piece max length of the parts that are left out as a whole
+template <class IsLost>
+CreaseCurves without(const CreaseCurves& creases, double piece, const IsLost& is_lost) {
   CreaseCurves kept;
-  const auto is_near = [&](const Vec3& p) { return rims.any_within(p, reach); };
+  kept.points = creases.points;
   for (const auto& [a, b] : creases.segments) {
-    const Vec3 &from = creases.points[a], &to = creases.points[b];
-    // Long segments lose only their ends.
-    const int pieces = std::max(1, static_cast<int>(std::ceil((to - from).norm() / reach)));
-    for (int k = 0; k < pieces; ++k) {
-      const Vec3 p = from + (to - from) * k / pieces, q = from + (to - from) * (k + 1) / pieces;
-      if (is_near(p) || is_near(q)) continue;
-      const auto first = static_cast<Index>(kept.points.size());
-      kept.points.insert(kept.points.end(), {p, q});
-      kept.segments.push_back({first, first + 1});
-    }
+    Index from = a;
+    for_each_run(
+        creases.points[a], creases.points[b], piece,
+        [&](const Vec3& p, const Vec3& q) { return is_lost(p) || is_lost(q); },
+        [&, end = b](const Vec3&, const Vec3& q, bool lost) {
+          const bool is_last = q == creases.points[end];
+          const Index to = is_last ? end : static_cast<Index>(kept.points.size());
+          if (!is_last) kept.points.push_back(q);
+          if (!lost) kept.segments.push_back({from, to});
+          from = to;
+        });
   }
   std::copy_if(creases.corners.begin(), creases.corners.end(), std::back_inserter(kept.corners),
-               [&](const Vec3& p) { return !is_near(p); });
+               [&](const Vec3& p) { return !is_lost(p); });
   return kept;
 }
 
-/// Reports patches and creases. Omits the creases of surfaces that meet others or themselves, as they may lie
-/// inside the solid, and those at open rims.
-void report_features(const MesherInput& input, const std::vector<SurfacePatches>& patches,
-                     MesherReport& report) {
+/// Reports patches and creases. Omits creases that are given up, and those at open rims, where the mesh rounds
+/// into the cap of a hole.
+void report_features(const MesherInput& input, const SurfaceFeatures& features, MesherReport& report) {
+  const std::vector<SurfacePatches>& patches = features.bodies;
   for (std::size_t b = 0; b < patches.size(); ++b) {
     const RepairedSurface& surface = input.bodies[b].surface;
-    const bool exact = patches[b].verdict != SurfacePatches::Verdict::meeting &&
-                       patches[b].verdict != SurfacePatches::Verdict::intersecting;
-    if (patches[b].any() && exact && !input.complex) {
+    if (patches[b].any() && !input.complex) {
       CreaseCurves creases;
       creases.add(find_creases(surface.points, surface.triangles, patches[b].patches,
                                CellTuning::Patches::corner_reach * report.cell_size, patches[b].rough),
                   surface.points);
-      if (surface.closed < surface.triangles.size())
-        creases =
-            away_from_rims(creases, open_rims(surface), CellTuning::Patches::rim_reach * report.cell_size);
+      if (surface.closed < surface.triangles.size()) {
+        const ProjectionTree rims = open_rims(surface);
+        const double reach = CellTuning::Patches::rim_reach * report.cell_size;
+        creases = without(creases, reach, [&](const Vec3& p) { return rims.any_within(p, reach); });
+      }
+      if (features.given_up.has(b))
+        creases = without(creases, features.given_up.piece(),
+                          [&](const Vec3& p) { return features.given_up.contains(p, b); });
       report.creases.add(creases);
     }
     report.features.push_back({input.bodies[b].name, patches[b]});
@@ -188,8 +199,9 @@ void report_features(const MesherInput& input, const std::vector<SurfacePatches>
   }
 }
 
-/// Reports the creases of a complex: for each sheet, those between its patches.
-void report_complex_creases(const MesherInput& input, const ComplexPatches& found, MesherReport& report) {
+/// Reports the creases of a complex: for each sheet, those between its patches that are not given up.
+void report_complex_creases(const MesherInput& input, const ComplexPatches& found,
+                            const GivenUpZone& given_up, MesherReport& report) {
   std::vector<std::vector<Triangle>> triangles(found.sheets.size());
   std::vector<std::vector<std::uint16_t>> of_triangles(found.sheets.size());
   for (std::size_t t = 0; t < input.complex->faces.size(); ++t) {
@@ -197,10 +209,22 @@ void report_complex_creases(const MesherInput& input, const ComplexPatches& foun
     triangles[sheet].push_back(found.triangles[t]);
     of_triangles[sheet].push_back(found.patches[t]);
   }
-  for (std::size_t s = 0; s < triangles.size(); ++s)
-    report.creases.add(find_creases(input.complex->points, triangles[s], of_triangles[s],
-                                    CellTuning::Patches::corner_reach * report.cell_size, found.rough),
-                       input.complex->points);
+  std::vector<std::pair<RegionIndex, RegionIndex>> regions(triangles.size());
+  for (const auto& [pair, sheet] : found.sheets) regions[sheet] = pair;
+  for (std::size_t s = 0; s < triangles.size(); ++s) {
+    CreaseCurves creases;
+    creases.add(find_creases(input.complex->points, triangles[s], of_triangles[s],
+                             CellTuning::Patches::corner_reach * report.cell_size, found.rough),
+                input.complex->points);
+    if (given_up.any())
+      creases = without(creases, given_up.piece(), [&](const Vec3& p) {
+        const auto is_given_up = [&](RegionIndex r) {
+          return r != outside_region && given_up.contains(p, std::size_t{r} - 1);
+        };
+        return is_given_up(regions[s].first) || is_given_up(regions[s].second);
+      });
+    report.creases.add(creases);
+  }
 }
 
 /// Drops creases that later bodies carve away, and creases near curves where three regions meet, which are
@@ -242,7 +266,11 @@ void allow_for_chamfers(MesherReport& report) {
 }  // namespace
 
 SurfaceFeatures find_features(const MesherInput& input, const MesherOptions& options, double cell) {
-  return {patches_of_bodies(input, options, cell), patches_of_sheets(input, options, cell), {}};
+  SurfaceFeatures found{patches_of_bodies(input, options, cell), {}, {}, {}, {}};
+  for (const MesherInput::Body& body : input.bodies)
+    found.options.push_back(patch_options(body, options, cell));
+  found.sheets = patches_of_sheets(input, options, cell);
+  return found;
 }
 
 bool has_features(const MesherInput& input, const SurfaceFeatures& features) {
@@ -252,19 +280,15 @@ bool has_features(const MesherInput& input, const SurfaceFeatures& features) {
                      [](const MesherInput::Body& body) { return !body.surface.groups.empty(); });
 }
 
-bool are_exact(const SurfaceFeatures& features) {
-  return std::none_of(features.bodies.begin(), features.bodies.end(), [](const SurfacePatches& p) {
-    return p.verdict == SurfacePatches::Verdict::meeting && p.any();
-  });
-}
-
-void settle_features(const MesherInput& input, SurfaceFeatures& features, DenseMesh& dense) {
-  if (!input.complex) give_up_where_surfaces_meet(input, dense.mesh, features.bodies);
-  give_up_where_gaps_are_closed(input, dense.report, features.bodies);
-  report_features(input, features.bodies, dense.report);
+void settle_features(const MesherInput& input, const std::vector<std::vector<Vec3>>& closed_gaps,
+                     SurfaceFeatures& features, DenseMesh& dense) {
+  features.given_up = find_given_up(input, closed_gaps, features.bodies, dense);
+  for (std::size_t b = 0; b < features.bodies.size(); ++b)
+    give_up_creases(input.bodies[b], b, features.options[b], features.given_up, features.bodies[b]);
+  report_features(input, features, dense.report);
   if (input.complex) {
     features.complex = complex_patches(input, features.bodies, features.sheets, dense.report.cell_size);
-    report_complex_creases(input, *features.complex, dense.report);
+    report_complex_creases(input, *features.complex, features.given_up, dense.report);
   } else if (has_features(input, features)) {
     keep_visible(dense.report.creases, input, dense);
   }
