@@ -66,7 +66,7 @@ class FeatureSurface : public ReferenceSurface {
   std::optional<Vec3> onto_patch(const Vec3& point, MaterialOrOutside first, MaterialOrOutside second,
                                  Patch patch, double max_distance) const override;
   std::optional<Vec3> onto_crease(const Vec3& point, double max_distance) const override;
-  bool lacks_creases(const Vec3& point) const override { return given_up_.contains(point); }
+  bool lacks_creases(const Vec3& point) const override { return given_up_.affects(point); }
   std::optional<Vec3> onto_corner(const Vec3& point, double max_distance) const override {
     return corner_points_.nearest(point, {}, max_distance);
   }

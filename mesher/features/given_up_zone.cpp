@@ -7,11 +7,10 @@
 
 #include "common/geometry/point_triangle.h"
 #include "common/geometry/self_intersection.h"
-#include "mesher/tuning/cell_tuning.h"
 
 namespace tetwright {
 
-GivenUpZone::GivenUpZone(std::vector<Causes> by_body, double reach) : reach_(reach) {
+GivenUpZone::GivenUpZone(std::vector<Causes> by_body, double cell) : cell_(cell) {
   for (Causes& causes : by_body) {
     any_ |= !causes.items.empty();
     only_crossings_.push_back(causes.only_crossings);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/geometry/projection_tree.h"
+#include "mesher/tuning/cell_tuning.h"
 #include "tetwright/mesher_input.h"
 #include "tetwright/surface_mesh.h"
 
@@ -36,28 +37,34 @@ class GivenUpZone {
 
   GivenUpZone() = default;
   /// \param by_body in the order of the input
-  /// \param reach distance from a cause within which creases are given up
-  GivenUpZone(std::vector<Causes> by_body, double reach);
+  /// \param cell edge of a finest cell, input units
+  GivenUpZone(std::vector<Causes> by_body, double cell);
 
   bool any() const { return any_; }
   bool has(std::size_t body) const { return body < bodies_.size() && !bodies_[body].empty(); }
   /// True if a body has no cause but crossings of itself.
   bool has_only_crossings(std::size_t body) const { return only_crossings_[body] != 0; }
+  /// True where nothing moves onto creases.
   bool contains(const Vec3& p, std::size_t body) const {
-    return has(body) && bodies_[body].any_within(p, reach_);
+    return has(body) && bodies_[body].any_within(p, CellTuning::GivenUp::reach * cell_);
   }
-  bool contains(const Vec3& p) const {
+  /// True there and beside it, where creases may be off.
+  bool affects(const Vec3& p, std::size_t body) const {
+    return has(body) &&
+           bodies_[body].any_within(p, (CellTuning::GivenUp::reach + CellTuning::GivenUp::beside) * cell_);
+  }
+  bool affects(const Vec3& p) const {
     for (std::size_t b = 0; b < bodies_.size(); ++b)
-      if (contains(p, b)) return true;
+      if (affects(p, b)) return true;
     return false;
   }
   /// Length of the pieces of creases that are kept or given up as a whole.
-  double piece() const { return reach_ / 2; }
+  double piece() const { return cell_; }
 
  private:
   std::vector<ProjectionTree> bodies_;
   std::vector<std::uint8_t> only_crossings_;
-  double reach_ = 0;
+  double cell_ = 0;
   bool any_ = false;
 };
 

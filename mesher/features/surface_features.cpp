@@ -113,7 +113,7 @@ GivenUpZone find_given_up(const MesherInput& input, const std::vector<std::vecto
       add_self_crossings(input.bodies[b].surface, causes[b]);
     if (!patches[b].any()) causes[b] = {};
   }
-  return {std::move(causes), CellTuning::GivenUp::reach * dense.report.cell_size};
+  return {std::move(causes), dense.report.cell_size};
 }
 
 /// Sets the fate of the sharp edges of a body in the zone. If no crease is left, the patches become those of
@@ -126,7 +126,7 @@ void give_up_creases(const MesherInput::Body& body, std::size_t number, const Pa
   const RepairedSurface& surface = body.surface;
   CreaseChains chains = find_crease_chains(
       surface.points, surface.triangles, options, surface.groups,
-      [&](const Vec3& p) { return zone.contains(p, number); }, zone.piece());
+      [&](const Vec3& p) { return zone.affects(p, number); }, zone.piece());
   if (chains.total(Fate::kept).count == 0 && chains.total(Fate::given_up).count > 0) {
     PatchOptions off;
     off.angle.rule = FeatureAngle::Rule::off;
@@ -190,7 +190,7 @@ void report_features(const MesherInput& input, const SurfaceFeatures& features, 
       }
       if (features.given_up.has(b))
         creases = without(creases, features.given_up.piece(),
-                          [&](const Vec3& p) { return features.given_up.contains(p, b); });
+                          [&](const Vec3& p) { return features.given_up.affects(p, b); });
       report.creases.add(creases);
     }
     report.features.push_back({input.bodies[b].name, patches[b]});
@@ -219,7 +219,7 @@ void report_complex_creases(const MesherInput& input, const ComplexPatches& foun
     if (given_up.any())
       creases = without(creases, given_up.piece(), [&](const Vec3& p) {
         const auto is_given_up = [&](RegionIndex r) {
-          return r != outside_region && given_up.contains(p, std::size_t{r} - 1);
+          return r != outside_region && given_up.affects(p, std::size_t{r} - 1);
         };
         return is_given_up(regions[s].first) || is_given_up(regions[s].second);
       });

@@ -124,6 +124,9 @@ struct CellTuning {
     /// Distance, cells, within which creases are given up: half a cell for the position of such a curve, and
     /// room for well-shaped tets between it and a crease that is exact.
     static constexpr double reach = 2;
+    /// Further distance, cells, within which creases are not reported nor borders of patches kept: as long as
+    /// edges, since an edge from within the reach does not show where it crosses a crease.
+    static constexpr double beside = 1.5;
     /// Distance, in longest edges of two triangles, within which a point is on a triangle: above rounding.
     static constexpr double on_triangle = 1e-9;
   };
