@@ -26,6 +26,9 @@ constexpr double low_share = 15.0 / 35;  ///< times the angle: edges that turn l
 constexpr double min_sharp_share = 0.5;  ///< borders with a smaller sharp fraction are removed
 constexpr double max_loose_low = 0.09;   ///< parts: up to 0.07; scans that pass the other test: 0.10
 constexpr double max_loose_high = 0.2;   ///< parts: up to 0.10; scans that pass the other test: 0.43
+/// Fraction of the area with noise above which a surface is a scan: flat cuts through scans are 6 % of their
+/// area and more, closed specks inside of scans 0.08 %.
+constexpr double max_noisy_share = 0.995;
 /// A surface is a staircase if its many patches have few triangles each, or if its sharp edges are those of
 /// equal boxes.
 constexpr std::size_t min_staircase_patches = 256;
@@ -268,7 +271,7 @@ void find_parts(std::span<const Vec3> points, std::span<const Triangle> triangle
   if (noisy) {
     result.noisy = merger.merge_noisy(points, triangles, edges, on_border, sharp);
     found.noisy_share = share_of(result.noisy, triangle_areas(points, triangles));
-    if (!merger.has_borders()) {
+    if (!merger.has_borders() || found.noisy_share > max_noisy_share) {
       found.verdict = Verdict::scan;
       return;
     }
@@ -305,8 +308,7 @@ FoundParts find_parts(std::span<const Vec3> points, std::span<const Triangle> tr
   for (const InnerEdge& e : edges)
     if (e.turn > sharp) result.sharp.push_back({e.ends, e.length, e.turn, fate_of(e, result)});
   for (const InnerEdge& e : edges_between_groups(points, triangles, uses))
-    if (e.turn > sharp)
-      result.sharp.push_back({e.ends, e.length, e.turn, CreaseChain::Fate::kept_groups});
+    if (e.turn > sharp) result.sharp.push_back({e.ends, e.length, e.turn, CreaseChain::Fate::kept_groups});
   return result;
 }
 

@@ -150,8 +150,9 @@ void FeatureSurface::add_complex(const ComplexPatches& complex, double corner_re
   bodies_of_sheet_.resize(sheets_.size());
   // Region 0 is the outside, and `bodies` counts from there.
   for (const auto& [regions, sheet] : sheets_)
-    bodies_of_sheet_[sheet] = {std::size_t{regions.first == outside_region ? regions.second : regions.first} - 1,
-                               std::size_t{regions.second} - 1};
+    bodies_of_sheet_[sheet] = {
+        std::size_t{regions.first == outside_region ? regions.second : regions.first} - 1,
+        std::size_t{regions.second} - 1};
   inner_sheets_ = complex.inner_sheets;
   first_continued_ = complex.first_continued;
   sheet_of_patch_ = complex.sheet_of_patch;
@@ -211,7 +212,8 @@ std::optional<FeatureSurface::Place> FeatureSurface::nearest_of_patch(const Vec3
 std::optional<Vec3> FeatureSurface::onto_patch(const Vec3& point, MaterialOrOutside first,
                                                MaterialOrOutside second, Patch patch,
                                                double max_distance) const {
-  if (patch == no_patch_ || (given_up_.any() && is_given_up(point, sheet_of(patch)))) return field_->project(point, first, second, max_distance);
+  if (patch == no_patch_ || (given_up_.any() && is_given_up(point, sheet_of(patch))))
+    return field_->project(point, first, second, max_distance);
   const auto place = nearest_of_patch(point, patch, max_distance);
   if (!place) return {};
   return place->point;

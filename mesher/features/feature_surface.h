@@ -98,8 +98,7 @@ class FeatureSurface : public ReferenceSurface {
   /// The closest point on a sheet within `at_most`.
   /// \param facing if given, only triangles whose normal is not opposite to it count
   /// \param min_facing smallest cosine between normals that are not opposite
-  std::optional<Place> nearest(const Vec3& p, std::size_t sheet, double at_most,
-                               const Vec3* facing = nullptr,
+  std::optional<Place> nearest(const Vec3& p, std::size_t sheet, double at_most, const Vec3* facing = nullptr,
                                double min_facing = CutTuning::Labelling::min_facing) const;
   /// The patch of faces that lie on no surface; queries for it go to the field.
   Patch no_patch() const { return no_patch_; }

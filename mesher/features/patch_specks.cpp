@@ -33,7 +33,8 @@ std::vector<Adjacent> adjacent_faces(const TetMesh& mesh, const FeatureSurface& 
     while (j < uses.size() && uses[j].key == uses[i].key) ++j;
     if (j - i != 2 || !(flags[uses[i].triangle] || flags[uses[i + 1].triangle])) continue;
     const auto [a, b] = ends_of(uses[i].key);
-    const InterfaceTriangle &f = mesh.interfaces[uses[i].triangle], &g = mesh.interfaces[uses[i + 1].triangle];
+    const InterfaceTriangle &f = mesh.interfaces[uses[i].triangle],
+                            &g = mesh.interfaces[uses[i + 1].triangle];
     if (f.pair() == g.pair() && surface.sheet_of(f) == surface.sheet_of(g))
       pairs.push_back({uses[i].triangle, uses[i + 1].triangle, (mesh.points[b] - mesh.points[a]).norm()});
   }

@@ -77,8 +77,8 @@ SheetPatches patches_of_sheets(const MesherInput& input, const MesherOptions& op
 
 using Causes = std::vector<GivenUpZone::Causes>;
 
-/// Adds the points where surfaces meet that are not joined. The curves in which they meet are accurate to half
-/// a cell only, and no well-shaped tets fit between these and exact creases.
+/// Adds the points where surfaces meet that are not joined. The curves in which they meet are accurate to
+/// half a cell only, and no well-shaped tets fit between these and exact creases.
 void add_meetings(const MesherInput& input, const TetMesh& mesh, Causes& causes) {
   if (input.bodies.size() == 1) return;
   std::map<MaterialTag, std::size_t> bodies;
@@ -116,17 +116,47 @@ GivenUpZone find_given_up(const MesherInput& input, const std::vector<std::vecto
   return {std::move(causes), dense.report.cell_size};
 }
 
-/// Sets the fate of the sharp edges of a body in the zone. If no crease is left, the patches become those of
-/// groups.
-void give_up_creases(const MesherInput::Body& body, std::size_t number, const PatchOptions& options,
-                     const GivenUpZone& zone, SurfacePatches& found) {
+/// Where creases of bodies are lost: where they are given up, and where a body that crosses itself has them
+/// inside the solid or outside of it, away from the mesh's boundary.
+class LostCreases {
+ public:
+  LostCreases(const MesherInput& input, const GivenUpZone& zone, const DenseMesh& dense)
+      : input_(input), zone_(zone), near_(CellTuning::Patches::junction_reach * dense.report.cell_size) {
+    const auto crosses_itself = [](const MesherInput::Body& body) { return body.surface.intersects_itself; };
+    if (!zone.any() || std::none_of(input.bodies.begin(), input.bodies.end(), crosses_itself)) return;
+    std::vector<ProjectionTree::Item> faces;
+    faces.reserve(dense.mesh.interfaces.size());
+    for (const InterfaceTriangle& t : dense.mesh.interfaces) faces.push_back({t.ids, {}});
+    boundary_ = ProjectionTree(dense.mesh.points, std::move(faces));
+  }
+
+  const GivenUpZone& zone() const { return zone_; }
+  bool contains(const Vec3& p, std::size_t body) const {
+    return zone_.affects(p, body) || (input_.bodies[body].surface.intersects_itself && !boundary_.empty() &&
+                                      !boundary_.any_within(p, near_));
+  }
+
+ private:
+  const MesherInput& input_;
+  const GivenUpZone& zone_;
+  double near_;
+  ProjectionTree boundary_;
+};
+
+/// Sets the fate of the sharp edges of a body that are lost. If no crease is left, the patches become those
+/// of groups.
+void give_up_creases(const MesherInput& input, std::size_t number, const LostCreases& lost,
+                     SurfaceFeatures& features) {
   using Fate = CreaseChain::Fate;
   using Verdict = SurfacePatches::Verdict;
+  const GivenUpZone& zone = features.given_up;
+  SurfacePatches& found = features.bodies[number];
   if (!zone.has(number) || found.verdict != Verdict::part) return;
+  const MesherInput::Body& body = input.bodies[number];
   const RepairedSurface& surface = body.surface;
   CreaseChains chains = find_crease_chains(
-      surface.points, surface.triangles, options, surface.groups,
-      [&](const Vec3& p) { return zone.affects(p, number); }, zone.piece());
+      surface.points, surface.triangles, features.options[number], surface.groups,
+      [&](const Vec3& p) { return lost.contains(p, number); }, zone.piece());
   if (chains.total(Fate::kept).count == 0 && chains.total(Fate::given_up).count > 0) {
     PatchOptions off;
     off.angle.rule = FeatureAngle::Rule::off;
@@ -172,9 +202,10 @@ CreaseCurves without(const CreaseCurves& creases, double piece, const IsLost& is
   return kept;
 }
 
-/// Reports patches and creases. Omits creases that are given up, and those at open rims, where the mesh rounds
-/// into the cap of a hole.
-void report_features(const MesherInput& input, const SurfaceFeatures& features, MesherReport& report) {
+/// Reports patches and creases. Omits creases that are given up, and those at open rims, where the mesh
+/// rounds into the cap of a hole.
+void report_features(const MesherInput& input, const SurfaceFeatures& features, const LostCreases& lost,
+                     MesherReport& report) {
   const std::vector<SurfacePatches>& patches = features.bodies;
   for (std::size_t b = 0; b < patches.size(); ++b) {
     const RepairedSurface& surface = input.bodies[b].surface;
@@ -188,9 +219,8 @@ void report_features(const MesherInput& input, const SurfaceFeatures& features, 
         const double reach = CellTuning::Patches::rim_reach * report.cell_size;
         creases = without(creases, reach, [&](const Vec3& p) { return rims.any_within(p, reach); });
       }
-      if (features.given_up.has(b))
-        creases = without(creases, features.given_up.piece(),
-                          [&](const Vec3& p) { return features.given_up.affects(p, b); });
+      if (lost.zone().has(b))
+        creases = without(creases, lost.zone().piece(), [&](const Vec3& p) { return lost.contains(p, b); });
       report.creases.add(creases);
     }
     report.features.push_back({input.bodies[b].name, patches[b]});
@@ -200,8 +230,8 @@ void report_features(const MesherInput& input, const SurfaceFeatures& features, 
 }
 
 /// Reports the creases of a complex: for each sheet, those between its patches that are not given up.
-void report_complex_creases(const MesherInput& input, const ComplexPatches& found,
-                            const GivenUpZone& given_up, MesherReport& report) {
+void report_complex_creases(const MesherInput& input, const ComplexPatches& found, const LostCreases& lost,
+                            MesherReport& report) {
   std::vector<std::vector<Triangle>> triangles(found.sheets.size());
   std::vector<std::vector<std::uint16_t>> of_triangles(found.sheets.size());
   for (std::size_t t = 0; t < input.complex->faces.size(); ++t) {
@@ -216,10 +246,10 @@ void report_complex_creases(const MesherInput& input, const ComplexPatches& foun
     creases.add(find_creases(input.complex->points, triangles[s], of_triangles[s],
                              CellTuning::Patches::corner_reach * report.cell_size, found.rough),
                 input.complex->points);
-    if (given_up.any())
-      creases = without(creases, given_up.piece(), [&](const Vec3& p) {
+    if (lost.zone().any())
+      creases = without(creases, lost.zone().piece(), [&](const Vec3& p) {
         const auto is_given_up = [&](RegionIndex r) {
-          return r != outside_region && given_up.affects(p, std::size_t{r} - 1);
+          return r != outside_region && lost.contains(p, std::size_t{r} - 1);
         };
         return is_given_up(regions[s].first) || is_given_up(regions[s].second);
       });
@@ -239,13 +269,11 @@ void keep_visible(CreaseCurves& creases, const MesherInput& input, const DenseMe
   const ProjectionTree tree(std::move(junctions.points), std::move(segments));
   const auto is_hidden = [&](const Vec3& p) {
     if (tree.nearest(p, {}, near)) return true;
-    const auto shows = [&](MaterialTag tag) {
-      return std::abs(dense.field->signed_distance(p, tag)) <= near;
+    const auto shows = [&](const auto& material) {
+      return std::abs(dense.field->signed_distance(p, material.tag)) <= near;
     };
-    return std::none_of(input.bodies.begin(), input.bodies.end(),
-                        [&](const auto& b) { return shows(b.tag); }) &&
-           std::none_of(input.layers.begin(), input.layers.end(),
-                        [&](const auto& l) { return shows(l.tag); });
+    return std::none_of(input.bodies.begin(), input.bodies.end(), shows) &&
+           std::none_of(input.layers.begin(), input.layers.end(), shows);
   };
   std::erase_if(creases.segments, [&](const std::array<Index, 2>& s) {
     return is_hidden(creases.points[s[0]]) || is_hidden(creases.points[s[1]]) ||
@@ -283,12 +311,12 @@ bool has_features(const MesherInput& input, const SurfaceFeatures& features) {
 void settle_features(const MesherInput& input, const std::vector<std::vector<Vec3>>& closed_gaps,
                      SurfaceFeatures& features, DenseMesh& dense) {
   features.given_up = find_given_up(input, closed_gaps, features.bodies, dense);
-  for (std::size_t b = 0; b < features.bodies.size(); ++b)
-    give_up_creases(input.bodies[b], b, features.options[b], features.given_up, features.bodies[b]);
-  report_features(input, features, dense.report);
+  const LostCreases lost(input, features.given_up, dense);
+  for (std::size_t b = 0; b < features.bodies.size(); ++b) give_up_creases(input, b, lost, features);
+  report_features(input, features, lost, dense.report);
   if (input.complex) {
     features.complex = complex_patches(input, features.bodies, features.sheets, dense.report.cell_size);
-    report_complex_creases(input, *features.complex, features.given_up, dense.report);
+    report_complex_creases(input, *features.complex, lost, dense.report);
   } else if (has_features(input, features)) {
     keep_visible(dense.report.creases, input, dense);
   }

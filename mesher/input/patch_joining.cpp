@@ -82,7 +82,8 @@ class PatchJoiner {
     for (const std::vector<Index>& set : connected(meeting(joined, PatchTuning::border_share)))
       if (join_set(set))
         for (const Index k : set) joined[k] = 1;
-    for (const std::vector<Index>& set : connected(meeting(joined, PatchTuning::mentioned_share))) report_gap(set);
+    for (const std::vector<Index>& set : connected(meeting(joined, PatchTuning::mentioned_share)))
+      report_gap(set);
     return take_joined();
   }
 

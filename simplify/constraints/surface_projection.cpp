@@ -85,8 +85,8 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
     bool sheet = edges[i].sheet;
     while (j < edges.size() && edges[j].key == edges[i].key) sheet |= edges[j++].sheet;
     const auto p = static_cast<Index>(edges[i].key >> 32), q = static_cast<Index>(edges[i].key);
-    // A given surface with patches provides its own feature edges, but not those of sheets, nor where it gives
-    // up creases.
+    // A given surface with patches provides its own feature edges, but not those of sheets, nor where it
+    // gives up creases.
     const auto is_own = [&] {
       return !given_patches_ || sheet || lacks_creases((mesh.position(p) + mesh.position(q)) / 2);
     };

@@ -134,7 +134,7 @@ struct SurfacePatches {
   enum class Verdict : std::uint8_t {
     off,           ///< not searched
     smooth,        ///< no edge turns far enough
-    scan,          ///< sharp edges end anywhere, as in noise, on all of the surface
+    scan,          ///< sharp edges end anywhere, as in noise, on all of the surface but specks
     intersecting,  ///< discarded: all creases are where the surface intersects itself
     meeting,       ///< discarded: all are where the surface meets another one, intersects itself or gaps are
                    ///< closed

@@ -168,8 +168,7 @@ TEST(StatsJson, SayWhatBecameOfEachCurve) {
   both.points.insert(both.points.end(), open.points.begin(), open.points.end());
   write_surface(both, f / "both.off");
   EXPECT_EQ(fates((f / "both.off") + " --resolution 16"), (Fates{{"given_up", 20}, {"further", 0}}));
-  EXPECT_NE(said.find("curves of 'both' that are not kept: 20 of length 22 given up"), std::string::npos)
-      << said;
+  EXPECT_NE(said.find("curves of 'both' that are not kept"), std::string::npos) << said;
 
   // A surface that touches the open one is not joined with it.
   write_surface(open, f / "open.off");
