@@ -27,8 +27,8 @@ constexpr double min_sharp_share = 0.5;  ///< borders with a smaller sharp fract
 constexpr double max_loose_low = 0.09;   ///< parts: up to 0.07; scans that pass the other test: 0.10
 constexpr double max_loose_high = 0.2;   ///< parts: up to 0.10; scans that pass the other test: 0.43
 /// Fraction of the area with noise above which a surface is a scan: flat cuts through scans are 6 % of their
-/// area and more, closed specks inside of scans 0.08 %.
-constexpr double max_noisy_share = 0.995;
+/// area and more, specks and the like 0.08 and 0.6 %.
+constexpr double max_noisy_share = 0.99;
 /// A surface is a staircase if its many patches have few triangles each, or if its sharp edges are those of
 /// equal boxes.
 constexpr std::size_t min_staircase_patches = 256;
