@@ -19,6 +19,7 @@
 #include "mesher/input/expected_solids.h"
 #include "mesher/level_sets/field_solid.h"
 #include "mesher/mesh_estimate.h"
+#include "mesher/sizing/narrow_sheets.h"
 #include "mesher/thin/field_thickness.h"
 #include "mesher/tuning/cell_tuning.h"
 #include "tetwright/error.h"
@@ -251,8 +252,12 @@ class SurfaceMeshing {
   /// The signed distance of each region, with cells for narrow patches, thin walls and requested sizes.
   void build_distances() {
     const int max_depth = std::min(budget_.max_depth, budget_.max_possible);
-    const NarrowPatches asked =
-        cells_around(options_.refinement_regions, voxels_, max_depth, budget_.base_tets);
+    std::vector<RefinementRegion> regions = options_.refinement_regions;
+    if (input_.complex) {
+      const std::vector<RefinementRegion> narrow = find_narrow_sheets(*input_.complex, report_.cell_size);
+      regions.insert(regions.end(), narrow.begin(), narrow.end());
+    }
+    const NarrowPatches asked = cells_around(regions, voxels_, max_depth, budget_.base_tets);
     std::vector<BodyCells> cells;
     for (std::size_t b = 0; b < input_.bodies.size(); ++b)
       cells.push_back({find_narrow_patches(input_.bodies[b].surface, features_.bodies[b], voxels_, max_depth,

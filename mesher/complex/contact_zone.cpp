@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/features/edge_uses.h"
 #include "common/geometry/morton.h"
 #include "common/geometry/point_triangle.h"
 #include "common/geometry/triangle_distance.h"
@@ -55,6 +56,27 @@ ContactZone::Distance away_from(const Vec3& away, double length, const Vec3& nor
 
 }  // namespace
 
+std::vector<TouchingEdge> touching_edges(const LabelledComplex& complex) {
+  std::vector<Triangle> triangles;
+  for (const LabelledComplex::Face& f : complex.faces) triangles.push_back(f.ids);
+  const std::vector<EdgeUse> uses = edge_uses(triangles, {});
+  std::vector<TouchingEdge> edges;
+  for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
+    std::vector<RegionIndex> regions;
+    bool have_common_face = false;
+    for (; j < uses.size() && uses[j].key == uses[i].key; ++j) {
+      const LabelledComplex::Face& f = complex.faces[uses[j].triangle];
+      have_common_face |= f.behind != outside_region && f.front != outside_region;
+      regions.push_back(f.behind == outside_region ? f.front : f.behind);
+    }
+    if (have_common_face || regions.size() <= 2) continue;
+    std::sort(regions.begin(), regions.end());
+    regions.erase(std::unique(regions.begin(), regions.end()), regions.end());
+    if (regions.size() > 1) edges.push_back({ends_of(uses[i].key), std::move(regions)});
+  }
+  return edges;
+}
+
 ContactZone::ContactZone(const LabelledComplex& complex, const GridFrame& voxels) {
   std::vector<Vec3> points;
   points.reserve(complex.points.size());
@@ -76,8 +98,33 @@ ContactZone::ContactZone(const LabelledComplex& complex, const GridFrame& voxels
   faces_.reserve(order.size());
   for (const Index i : order) faces_.push_back(faces[i]);
 
+  add_touching_edges(complex, points);
   add_junctions(complex, points, voxels.cells);
   add_narrow_parts(voxels.cells);
+}
+
+void ContactZone::add_touching_edges(const LabelledComplex& complex, const std::vector<Vec3>& points) {
+  std::vector<ProjectionTree::Item> items;
+  for (TouchingEdge& edge : touching_edges(complex)) {
+    const auto& [a, b] = edge.ends;
+    if (touching_regions_.empty() || touching_regions_.back() != edge.regions)
+      touching_regions_.push_back(std::move(edge.regions));
+    items.push_back({{a, b, b}, {static_cast<std::uint32_t>(touching_regions_.size() - 1), 0, 0}});
+  }
+  if (!items.empty()) touching_ = ProjectionTree(points, std::move(items));
+}
+
+double ContactZone::touching_thickness(const Vec3& point, RegionIndex first, RegionIndex second) const {
+  if (touching_.empty()) return 0;
+  const auto hit = touching_.nearest_of(point, Zone::reach, [&](const ProjectionTree::Item& item) {
+    const std::vector<RegionIndex>& regions = touching_regions_[item.kind[0]];
+    const auto touches = [&](RegionIndex region) {
+      return region == outside_region || std::binary_search(regions.begin(), regions.end(), region);
+    };
+    return touches(first) && touches(second);
+  });
+  if (!hit) return 0;
+  return Zone::touching_thickness * (1 - (hit->point - point).squaredNorm() / (Zone::reach * Zone::reach));
 }
 
 void ContactZone::add_junctions(const LabelledComplex& complex, const std::vector<Vec3>& points,
@@ -198,19 +245,21 @@ std::pair<const ContactZone::Face*, Vec3> ContactZone::nearest_face(const Vec3& 
 }
 
 std::optional<ContactZone::Narrow> ContactZone::narrow(const Vec3& point, const Nearest& at) const {
-  const double limit = Zone::widest_narrow - at.distance.value;
+  double touching = at.region == outside_region ? touching_thickness(point, at.across, outside_region) : 0;
+  const double limit = std::max(Zone::widest_narrow, touching) - at.distance.value;
   if (!(limit > 0)) return {};
   const auto [farther, away] = nearest_face(
       point, limit, [&](const Face& f) { return f.bounds(at.region) && f.across(at.region) != at.across; });
   if (!farther) return {};
+  if (touching > 0) touching = touching_thickness(point, at.across, farther->across(at.region));
   const Distance distance =
       away_from(away, away.norm(), farther->front == at.region ? farther->normal : Vec3(-farther->normal));
   const double cosine = distance.gradient.dot(at.distance.gradient);
-  if (cosine > Zone::facing) return {};
+  if (cosine > Zone::facing && !(touching > 0)) return {};
   const double thickness = at.distance.value + distance.value;
-  const double share = std::min(1.0, (Zone::facing - cosine) / (Zone::facing - Zone::facing_entirely));
-  const double smallest =
-      share * (at.region == outside_region ? Zone::min_thickness : Zone::min_refined_thickness);
+  const double share = std::clamp((Zone::facing - cosine) / (Zone::facing - Zone::facing_entirely), 0.0, 1.0);
+  const double smallest = std::max(
+      touching, share * (at.region == outside_region ? Zone::min_thickness : Zone::min_refined_thickness));
   return Narrow{farther->across(at.region),
                 distance,
                 thickness,

@@ -11,14 +11,25 @@
 #include <vector>
 
 #include "common/geometry/box_tree.h"
+#include "common/geometry/projection_tree.h"
 #include "mesher/complex/labelled_complex.h"
 #include "mesher/domain/grid_frame.h"
 
 namespace tetwright {
 
+/// An edge of a complex in which bodies touch: the outside is on both sides of it.
+struct TouchingEdge {
+  std::array<Index, 2> ends;         ///< ascending
+  std::vector<RegionIndex> regions;  ///< of the bodies, ascending; two or more
+};
+
+/// The edges in which bodies touch without a common face at the edge, ascending.
+std::vector<TouchingEdge> touching_edges(const LabelledComplex& complex);
+
 /// Regions and distances around the contacts and junctions of a complex, computed from its triangles: a point
 /// belongs to the region on its side of the nearest triangle, so that no gap opens between bodies that share
-/// a sheet. Where a region is thinner than a cell between two others, it gives way to one of them (Narrow).
+/// a sheet. Where a region is thinner than a cell between two others, it gives way to one of them (Narrow);
+/// so does the outside around lines in which bodies touch, as far as cells need to join them in one piece.
 /// Voxel coordinates; immutable, all functions may be called concurrently.
 class ContactZone {
  public:
@@ -72,6 +83,10 @@ class ContactZone {
   void add_junctions(const LabelledComplex& complex, const std::vector<Vec3>& points,
                      const std::array<int, 3>& cells);
   void add_narrow_parts(const std::array<int, 3>& cells);
+  void add_touching_edges(const LabelledComplex& complex, const std::vector<Vec3>& points);
+  /// The thickness below which the outside gives way at a point because two bodies touch in a line near it;
+  /// with outside_region, any bodies.
+  double touching_thickness(const Vec3& point, RegionIndex first, RegionIndex second) const;
   bool faces_another_pair(const Face& face) const;
   /// The nearest face within `limit` for which `accepts(face)` holds, or null, and the vector from it to the
   /// point.
@@ -80,6 +95,8 @@ class ContactZone {
   void add(const std::vector<std::uint64_t>& keys);
 
   BoxTree tree_;
+  std::vector<std::vector<RegionIndex>> touching_regions_;
+  ProjectionTree touching_;  ///< touching_edges(); kinds are indices into touching_regions_
   std::vector<Face> faces_;  ///< in the order of the tree
   std::unordered_map<std::uint64_t, Mask> leaves_;
 };

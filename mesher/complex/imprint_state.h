@@ -76,9 +76,9 @@ class ImprintState {
   /// \throws OutputError if they need more memory than is available
   void find_pairs(bool all);
   std::vector<ImprintEvent> find_events();
-  /// Removes the diagonals from events. Returns events that turn those of one surface into those of the
-  /// other: both divide four points in one plane differently, and which of them is above would be rounding.
-  /// \param events of find_events()
+  /// Removes from events those of edges that divide the same four points of one plane differently: which of
+  /// them is above would be rounding. Returns events that give the later surface the diagonals of the
+  /// earlier. \param events of find_events()
   std::vector<ImprintEvent> take_diagonals(std::vector<ImprintEvent>& events) const;
   /// Whether edges pass each other near the end of one that is a point of both surfaces already. Putting this
   /// point on the other edge makes a sliver there, whose removal takes it off again.

@@ -9,7 +9,6 @@
 #include "common/geometry/box_tree.h"
 #include "common/geometry/ray_crossing.h"
 #include "common/mesh/disjoint_sets.h"
-#include "mesher/complex/imprint_state.h"
 #include "mesher/complex/surface_cells.h"
 #include "mesher/tuning/complex_tuning.h"
 #include "tetwright/resources.h"
@@ -48,7 +47,8 @@ class ComplexBuilder {
   ComplexResult build() {
     const double bytes =
         ComplexTuning::Cells::bytes_per_triangle * static_cast<double>(imprinted_.triangles.size());
-    require_imprint_memory(bytes);
+    require_memory(bytes, "finding which body each part of space belongs to",
+                   "free some, give a larger --memory-limit, or give surfaces of fewer triangles");
     result_.peak_bytes = std::max(bytes, imprinted_.peak_bytes);
     using Step = void (ComplexBuilder::*)();
     for (const Step step :
@@ -389,6 +389,33 @@ class ComplexBuilder {
       contact.largest_gap = std::max(contact.largest_gap, moved);
       contact.largest_overlap = std::max(contact.largest_overlap, -moved);
     }
+  }
+
+  /// Compares the volumes of the bodies with those before imprinting.
+  void find_torn() {
+    if (rule_ == OverlapRule::first || soup_.points.empty()) return;
+    std::vector<double> change(bodies_, 0), area(bodies_, 0), contact(bodies_, 0);
+    const Vec3& apex = soup_.points[0];
+    const auto six_volumes = [&](const std::vector<Vec3>& points, const Triangle& t) {
+      return (points[t[0]] - apex).dot((points[t[1]] - apex).cross(points[t[2]] - apex));
+    };
+    for (std::size_t t = 0; t < soup_.triangles.size(); ++t) {
+      if (soup_.surface[t] >= bodies_) continue;
+      const auto& [a, b, c] = soup_.triangles[t];
+      change[soup_.surface[t]] -= six_volumes(soup_.points, soup_.triangles[t]) / 6;
+      area[soup_.surface[t]] +=
+          (soup_.points[b] - soup_.points[a]).cross(soup_.points[c] - soup_.points[a]).norm() / 2;
+    }
+    for (std::size_t b = 0; b < bodies_; ++b)
+      for (const Triangle& t : result_.body_triangles[b]) change[b] += six_volumes(imprinted_.points, t) / 6;
+    for (const BodyContact& c : result_.contacts) {
+      if (c.first < bodies_) contact[c.first] += c.area;
+      if (c.second < bodies_) contact[c.second] += c.area;
+    }
+    for (std::size_t b = bodies_; b-- > 0;)
+      if (std::abs(change[b]) > tolerance_ * (ComplexTuning::Contact::moved_contact * contact[b] +
+                                              ComplexTuning::Contact::moved_area * area[b]))
+        result_.torn = b;
   }
 
   void find_contacts() {

@@ -111,8 +111,11 @@ struct ComplexResult {
   std::vector<BodyContact> contacts;  ///< by pair
   std::vector<char> lost;             ///< by body: nothing of it is left after carving
   std::optional<Vec3> inconsistent;   ///< a point where the cells contradict the bodies' orientation
-  std::vector<SheetFate> sheets;      ///< by sheet
-  double peak_bytes = 0;              ///< estimated peak memory of imprinting and labelling
+  /// A body whose volume differs by more than moves within the tolerance explain: merging has torn it, as
+  /// the tolerance is larger than parts of it. Not looked for with OverlapRule::first.
+  std::optional<std::size_t> torn;
+  std::vector<SheetFate> sheets;  ///< by sheet
+  double peak_bytes = 0;          ///< estimated peak memory of imprinting and labelling
 };
 
 /// The sheets among imprinted surfaces: those after the bodies.

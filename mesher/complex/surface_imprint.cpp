@@ -44,6 +44,7 @@ class Imprinter : private ImprintState {
       find_pairs(round == 0);
       const double bytes = Imprint::bytes_per_triangle * static_cast<double>(triangles_.size()) +
                            Imprint::bytes_per_pair * static_cast<double>(pairs_.size());
+      require_imprint_memory(bytes);
       result_.peak_bytes = std::max(result_.peak_bytes, bytes);
       if (round == 0) budget = std::max(budget, bound.per_pair * static_cast<double>(pairs_.size()));
       const std::vector<Event> events = next_events(round);
@@ -84,7 +85,7 @@ class Imprinter : private ImprintState {
     bool operator<(const OnEdge& o) const { return share != o.share ? share < o.share : point < o.point; }
   };
 
-  /// All that a round does.
+  /// The events of a round.
   std::vector<Event> next_events(int round) {
     std::vector<Event> events = find_events();
     std::vector<Event> diagonals = take_diagonals(events);
@@ -421,7 +422,7 @@ class Imprinter : private ImprintState {
 
   ImprintedSurfaces result_;
   std::size_t first_new_ = 0;
-  int clean_rounds_ = 0;              ///< those so far that only removed triangles
+  int clean_rounds_ = 0;              ///< rounds so far that removed slivers, folds or diagonals only
   std::vector<std::uint32_t> owner_;  ///< earliest surface on which each point lies
 };
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "mesher/complex/contact_zone.h"
 #include "mesher/complex/sheet_borders.h"
 #include "mesher/features/sliver_patches.h"
 #include "mesher/input/contact_groups.h"
@@ -95,6 +96,7 @@ ComplexPatches complex_patches(const MesherInput& input, const std::vector<Surfa
     out.patches.push_back(number->second);
   }
   out.points = complex.points;
+  for (const TouchingEdge& edge : touching_edges(complex)) out.touching.push_back(edge.ends);
   merge_slivers(out.points, out.triangles, out.sheet_of_patch, CellTuning::Patches::sliver * cell * cell,
                 out.patches);
   out.first_continued = static_cast<std::uint16_t>(out.groups.size());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <utility>
@@ -30,7 +31,8 @@ struct ComplexPatches {
   std::uint16_t first_continued = 0;
   /// Surface region of the input that each patch belongs to, or none; see FaceGroups.
   std::vector<SurfaceRegion> groups;
-  std::vector<std::uint8_t> rough;  ///< of each patch, see SurfacePatches::rough
+  std::vector<std::uint8_t> rough;             ///< of each patch, see SurfacePatches::rough
+  std::vector<std::array<Index, 2>> touching;  ///< edges of touching_edges(), ascending: no creases
 };
 
 /// The patches of inner sheets.

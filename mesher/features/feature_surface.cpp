@@ -46,7 +46,8 @@ FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<Surfa
 void FeatureSurface::add_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                                    const std::vector<std::uint16_t>& patches,
                                    const std::vector<std::uint8_t>& rough, Patch first_patch,
-                                   double corner_reach, Items& items) {
+                                   double corner_reach, Items& items,
+                                   std::span<const std::array<Index, 2>> without) {
   const auto first = static_cast<Index>(items.points.size());
   const auto patch_of = [&](std::uint16_t local) { return static_cast<Patch>(first_patch + local); };
   items.points.insert(items.points.end(), points.begin(), points.end());
@@ -59,7 +60,10 @@ void FeatureSurface::add_triangles(const std::vector<Vec3>& points, const std::v
   const SurfaceCreases found = find_creases(points, triangles, patches, corner_reach, rough);
   std::map<Index, std::set<Patch>> at_corners;
   for (const Index c : found.corners) at_corners[c] = {};
+  for (const std::array<Index, 2>& edge : without)
+    for (const Index p : edge) at_corners.erase(p);
   for (const SurfaceCreases::Segment& s : found.segments) {
+    if (std::binary_search(without.begin(), without.end(), s.ends)) continue;
     add_segment(s, first, {patch_of(s.patches[0]), patch_of(s.patches[1])}, items);
     for (const Index end : s.ends)
       if (const auto corner = at_corners.find(end); corner != at_corners.end())
@@ -157,7 +161,8 @@ void FeatureSurface::add_complex(const ComplexPatches& complex, double corner_re
   first_continued_ = complex.first_continued;
   sheet_of_patch_ = complex.sheet_of_patch;
   groups_ = complex.groups;
-  add_triangles(complex.points, complex.triangles, complex.patches, complex.rough, 0, corner_reach, items);
+  add_triangles(complex.points, complex.triangles, complex.patches, complex.rough, 0, corner_reach, items,
+                complex.touching);
 }
 
 std::optional<std::size_t> FeatureSurface::sheet_of(const InterfaceTriangle& face) const {

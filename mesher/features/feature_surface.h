@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -136,9 +137,11 @@ class FeatureSurface : public ReferenceSurface {
   void add_bodies(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach,
                   const std::vector<TriangleMesh>& caps, Items& items);
   /// Adds triangles with their patches, and the creases between these.
+  /// \param without edges, ascending, that are no creases
   void add_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                      const std::vector<std::uint16_t>& patches, const std::vector<std::uint8_t>& rough,
-                     Patch first_patch, double corner_reach, Items& items);
+                     Patch first_patch, double corner_reach, Items& items,
+                     std::span<const std::array<Index, 2>> without = {});
   void add_segment(const SurfaceCreases::Segment& segment, Index first, const PatchPair& patches,
                    Items& items) const;
 

@@ -36,9 +36,9 @@ std::vector<SheetEdge> edges_of_sheets(std::span<const Triangle> triangles,
 
 }  // namespace
 
-std::size_t merge_slivers(std::span<const Vec3> points, std::span<const Triangle> triangles,
-                          std::span<const std::size_t> sheet_of_patch, double min_area,
-                          std::span<std::uint16_t> patches) {
+void merge_slivers(std::span<const Vec3> points, std::span<const Triangle> triangles,
+                   std::span<const std::size_t> sheet_of_patch, double min_area,
+                   std::span<std::uint16_t> patches) {
   const std::vector<SheetEdge> edges = edges_of_sheets(triangles, sheet_of_patch, patches);
   DisjointSets parts(triangles.size());
   for (const SheetEdge& e : edges)
@@ -52,7 +52,7 @@ std::size_t merge_slivers(std::span<const Vec3> points, std::span<const Triangle
   std::vector<char> is_sliver(triangles.size(), 0);
   for (Index t = 0; t < triangles.size(); ++t)
     if (parts.is_root(t) && areas[t] < min_area) slivers.emplace_back(areas[t], t), is_sliver[t] = 1;
-  if (slivers.empty()) return 0;
+  if (slivers.empty()) return;
   std::sort(slivers.begin(), slivers.end());
 
   std::map<Index, std::map<Index, double>> borders;  // length by neighbour, of each sliver
@@ -66,10 +66,12 @@ std::size_t merge_slivers(std::span<const Vec3> points, std::span<const Triangle
   // A sliver that others have joined still decides by its own borders.
   std::vector<Index> joins(triangles.size(), no_index);
   const auto joined = [&](Index part) {
-    while (joins[part] != no_index) part = joins[part];
+    while (joins[part] != no_index) {
+      if (const Index next = joins[joins[part]]; next != no_index) joins[part] = next;
+      part = joins[part];
+    }
     return part;
   };
-  std::size_t merged = 0;
   for (const auto& [area, sliver] : slivers) {
     std::map<Index, double> lengths;
     for (const auto& [other, length] : borders[sliver])
@@ -78,12 +80,10 @@ std::size_t merge_slivers(std::span<const Vec3> points, std::span<const Triangle
                                           [](const auto& x, const auto& y) { return x.second < y.second; });
     if (longest == lengths.end()) continue;
     joins[sliver] = longest->first;
-    ++merged;
   }
   std::vector<std::uint16_t> of_parts(triangles.size());
   for (Index t = 0; t < triangles.size(); ++t) of_parts[t] = patches[joined(parts.root(t))];
   std::copy(of_parts.begin(), of_parts.end(), patches.begin());
-  return merged;
 }
 
 }  // namespace tetwright

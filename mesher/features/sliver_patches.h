@@ -18,9 +18,8 @@ namespace tetwright {
 /// \param sheet_of_patch triangles of one sheet meet in creases, those of two sheets in junctions
 /// \param patches of each triangle; changed
 /// \param min_area square of the points' unit
-/// \return number of merged parts
-std::size_t merge_slivers(std::span<const Vec3> points, std::span<const Triangle> triangles,
-                          std::span<const std::size_t> sheet_of_patch, double min_area,
-                          std::span<std::uint16_t> patches);
+void merge_slivers(std::span<const Vec3> points, std::span<const Triangle> triangles,
+                   std::span<const std::size_t> sheet_of_patch, double min_area,
+                   std::span<std::uint16_t> patches);
 
 }  // namespace tetwright

@@ -187,7 +187,7 @@ class StripCollapse {
   }
 
   /// Splits the longer of the edges from a point to two others, so that it is no longer joined to both.
-  /// \return false if a tet would not be positive
+  /// \return false if a tet would have too small a solid angle
   bool part_from(Index p, Index u, Index v) {
     const Index end = (at(u) - at(p)).squaredNorm() >= (at(v) - at(p)).squaredNorm() ? u : v;
     const Vec3 position = (at(end) + at(p)) / 2;
@@ -198,7 +198,9 @@ class StripCollapse {
         std::array<Vec3, 4> c;
         for (std::size_t k = 0; is_real(tets_[t]) && k < 4; ++k)
           c[k] = tets_[t][k] == replaced ? position : at(tets_[t][k]);
-        if (is_real(tets_[t]) && !(orient3d(c[0], c[1], c[2], c[3]) > 0)) return false;
+        if (is_real(tets_[t]) && !(orient3d(c[0], c[1], c[2], c[3]) > 0 &&
+                                   min_solid_angle(c[0], c[1], c[2], c[3]) > Strips::min_solid_angle))
+          return false;
       }
     const auto middle = static_cast<Index>(mesh_.points.size());
     mesh_.points.push_back(position);
@@ -402,7 +404,8 @@ class StripCollapse {
     std::map<Index, Vec3> before;
     if (!others->empty()) {
       if (others->size() > Strips::max_splits || others->contains(beyond_)) return false;
-      // Where no points make room, edges are split only if there is a position.
+      // Where no points make room, edges are split only if there is a position; else it can only be sought
+      // once the points may be joined.
       if (!makes_room_ && !best_position(u, v, before)) return false;
       for (const Index p : *others)
         if (!part_from(p, u, v)) return false;

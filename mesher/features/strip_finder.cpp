@@ -40,7 +40,12 @@ StripFinder::StripFinder(const LabelledComplex& complex, const FeatureSurface& s
 
 void StripFinder::add_complex(const LabelledComplex& complex) {
   std::vector<Triangle> triangles;
-  for (const LabelledComplex::Face& f : complex.faces) triangles.push_back(f.ids);
+  for (const LabelledComplex::Face& f : complex.faces) {
+    triangles.push_back(f.ids);
+    const std::size_t sheet = *surface_.sheet_between(f.behind, f.front);
+    if (sides_.size() <= sheet) sides_.resize(sheet + 1);
+    sides_[sheet] = {f.behind, f.front};
+  }
   for (const LabelledComplex::SheetFace& f : complex.sheets) triangles.push_back(f.ids);
   const std::vector<EdgeUse> uses = edge_uses(triangles, {});
   std::vector<Vec3> points;
@@ -64,11 +69,7 @@ void StripFinder::add_complex(const LabelledComplex& complex) {
     const bool branches = pairs.size() + inner >= Strips::min_sheets;
     if (!branches && pairs.size() < 2) continue;
     Sheets sheets;
-    for (const auto& [a, b] : pairs) {
-      sheets.push_back(*surface_.sheet_between(a, b));
-      if (sides_.size() <= sheets.back()) sides_.resize(sheets.back() + 1);
-      sides_[sheets.back()] = {a, b};
-    }
+    for (const auto& [a, b] : pairs) sheets.push_back(*surface_.sheet_between(a, b));
     std::sort(sheets.begin(), sheets.end());
     const auto first = static_cast<Index>(points.size());
     for (const Index p : ends_of(uses[i].key)) {

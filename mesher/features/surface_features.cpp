@@ -166,7 +166,7 @@ void give_up_creases(const MesherInput& input, std::size_t number, const LostCre
   found.chains = std::move(chains);
 }
 
-/// The edges with one triangle, around holes that are not flat.
+/// The edges with one triangle, around holes that are not flat: the mesh rounds into their caps.
 ProjectionTree open_rims(const RepairedSurface& surface) {
   std::vector<ProjectionTree::Item> segments;
   const std::vector<EdgeUse> uses = edge_uses(surface.triangles, {});
@@ -202,6 +202,11 @@ CreaseCurves without(const CreaseCurves& creases, double piece, const IsLost& is
   return kept;
 }
 
+/// Leaves out what is nearer to some curves than `reach`.
+CreaseCurves away_from(const CreaseCurves& creases, const ProjectionTree& curves, double reach) {
+  return without(creases, reach, [&](const Vec3& p) { return curves.any_within(p, reach); });
+}
+
 /// Reports patches and creases. Omits creases that are given up, and those at open rims, where the mesh
 /// rounds into the cap of a hole.
 void report_features(const MesherInput& input, const SurfaceFeatures& features, const LostCreases& lost,
@@ -214,11 +219,8 @@ void report_features(const MesherInput& input, const SurfaceFeatures& features, 
       creases.add(find_creases(surface.points, surface.triangles, patches[b].patches,
                                CellTuning::Patches::corner_reach * report.cell_size, patches[b].rough),
                   surface.points);
-      if (surface.closed < surface.triangles.size()) {
-        const ProjectionTree rims = open_rims(surface);
-        const double reach = CellTuning::Patches::rim_reach * report.cell_size;
-        creases = without(creases, reach, [&](const Vec3& p) { return rims.any_within(p, reach); });
-      }
+      if (surface.closed < surface.triangles.size())
+        creases = away_from(creases, open_rims(surface), CellTuning::Patches::rim_reach * report.cell_size);
       if (lost.zone().has(b))
         creases = without(creases, lost.zone().piece(), [&](const Vec3& p) { return lost.contains(p, b); });
       report.creases.add(creases);
@@ -229,7 +231,15 @@ void report_features(const MesherInput& input, const SurfaceFeatures& features, 
   }
 }
 
-/// Reports the creases of a complex: for each sheet, those between its patches that are not given up.
+/// The lines in which bodies touch without a common face.
+ProjectionTree touching_lines(const ComplexPatches& complex) {
+  std::vector<ProjectionTree::Item> segments;
+  for (const auto& [a, b] : complex.touching) segments.push_back({{a, b, b}, {}});
+  return {complex.points, std::move(segments)};
+}
+
+/// Reports the creases of a complex: for each sheet, those between its patches that are not given up. Omits
+/// those at lines in which bodies touch, where the mesh joins them over a few cells.
 void report_complex_creases(const MesherInput& input, const ComplexPatches& found, const LostCreases& lost,
                             MesherReport& report) {
   std::vector<std::vector<Triangle>> triangles(found.sheets.size());
@@ -241,6 +251,7 @@ void report_complex_creases(const MesherInput& input, const ComplexPatches& foun
   }
   std::vector<std::pair<RegionIndex, RegionIndex>> regions(triangles.size());
   for (const auto& [pair, sheet] : found.sheets) regions[sheet] = pair;
+  const ProjectionTree lines = touching_lines(found);
   for (std::size_t s = 0; s < triangles.size(); ++s) {
     CreaseCurves creases;
     creases.add(find_creases(input.complex->points, triangles[s], of_triangles[s],
@@ -253,6 +264,8 @@ void report_complex_creases(const MesherInput& input, const ComplexPatches& foun
         };
         return is_given_up(regions[s].first) || is_given_up(regions[s].second);
       });
+    if (!lines.empty())
+      creases = away_from(creases, lines, CellTuning::Patches::rim_reach * report.cell_size);
     report.creases.add(creases);
   }
 }

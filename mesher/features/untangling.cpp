@@ -29,9 +29,12 @@ class Distortion {
     // The edges of a regular tet of the mean volume.
     Matrix3d regular;
     regular << 1, 0.5, 0.5, 0, std::sqrt(3) / 2, std::sqrt(3) / 6, 0, 0, std::sqrt(2.0 / 3);
-    from_regular_ = (std::cbrt(6 * volume / regular.determinant()) * regular).inverse();
+    size_ = std::cbrt(6 * volume / regular.determinant());
+    from_regular_ = (size_ * regular).inverse();
   }
 
+  /// Edge of a regular tet of the mean volume.
+  double size() const { return size_; }
   VectorXd position() const {
     VectorXd x(3 * free_);
     for (Index p = 0; p < points_.size(); ++p)
@@ -92,6 +95,7 @@ class Distortion {
   std::span<const Tet> tets_;
   std::vector<Index> number_;  ///< of points that may move
   Index free_ = 0;
+  double size_;
   Matrix3d from_regular_;
 };
 
@@ -115,14 +119,14 @@ double minimise(Distortion& distortion, double epsilon) {
                    pairs[i].first;
     const double slope = gradient.dot(direction);
     if (!(slope < 0)) break;
-    double share = pairs.empty() ? std::min(1.0, 0.1 / direction.norm()) : 1;
+    double share = pairs.empty() ? Limits::first_step * distortion.size() / direction.norm() : 1;
     VectorXd next, next_gradient;
     double reached = INFINITY;
     for (int halving = 0; halving < Limits::max_halvings; ++halving, share /= 2) {
       next = x + share * direction;
       distortion.move_to(next);
       reached = distortion.value(epsilon, &next_gradient);
-      if (reached <= value + 1e-4 * share * slope) break;
+      if (reached <= value + Limits::sufficient_decrease * share * slope) break;
     }
     if (!(reached < value)) {
       distortion.move_to(x);
@@ -143,14 +147,15 @@ double minimise(Distortion& distortion, double epsilon) {
 
 bool untangle(std::vector<Vec3>& points, std::span<const Tet> tets, std::span<const std::uint8_t> is_locked) {
   Distortion distortion(points, tets, is_locked);
+  if (!(distortion.size() > 0)) return false;
   double epsilon = 1;
   for (int round = 0; round < Limits::max_rounds; ++round) {
     const double before = distortion.value(epsilon, nullptr), after = minimise(distortion, epsilon);
     const double least = distortion.min_determinant();
     if (least > Limits::min_determinant) return true;
-    const double gain = std::max(1 - after / before, 0.1);
+    const double gain = std::max(1 - after / before, Limits::min_reduction);
     const double aim = (1 - gain) * Distortion::regularised(least, epsilon);
-    epsilon = least < aim ? 2 * std::sqrt(aim * (aim - least)) : 1e-10;
+    epsilon = least < aim ? 2 * std::sqrt(aim * (aim - least)) : Limits::least_epsilon;
   }
   return distortion.min_determinant() > 0;
 }

@@ -14,7 +14,8 @@ namespace tetwright {
 /// Protais, Ray and Sokolov 2021, Foldover-free maps in 50 lines of code, section 2).
 /// \param points any unit; changed
 /// \param is_locked by point: does not move
-/// \return false if tets that are not positive are left; the points are then wherever they have come
+/// \return false if all tets are flat, or tets that are not positive are left; the points are then wherever
+/// they have come
 bool untangle(std::vector<Vec3>& points, std::span<const Tet> tets, std::span<const std::uint8_t> is_locked);
 
 }  // namespace tetwright

@@ -148,12 +148,19 @@ std::vector<BodyBuilder::ClosedSurface> BodyBuilder::close_holes(std::vector<Mat
     for (const Vec3& p : own.cleaned.points) low = low.cwiseMin(p), high = high.cwiseMax(p);
     for (const SurfaceRegion& group : s.surface.groups) names_.insert(group.name);
     const auto joined = joined_.find(i);
-    if (joined != joined_.end() && rule == RegionRule::cells)
+    if (joined != joined_.end() && rule == RegionRule::cells && !partitioned) {
       own.walled = std::move(joined->second);
-    else if (joined != joined_.end())
-      own.cleaned = outline_of(joined->second.divided);
-    else
+    } else if (joined != joined_.end()) {
+      const DividedSurface& divided = joined->second.divided;
+      own.cleaned = outline_of(divided);
+      if (divided.cells.size() > 1)
+        add_finding(own.findings, DiagnosticCode::inner_walls_dropped,
+                    "cells between the inner walls of surfaces that close together", divided.cells.size(),
+                    divided.cells[0].surface.points[0],
+                    "joined, as partitions or the outer body were asked for");
+    } else {
       own.walled = separate_walls(own.cleaned, s.file, nested, rule, contact_, progress_);
+    }
     if (own.has_cells() && partitioned) own.walled.reset();
     if (own.has_cells()) continue;
     for (SurfaceHole& hole : close_flat_holes(own.cleaned, s.surface.groups, s.file, caps_, own.findings)) {

@@ -225,6 +225,14 @@ void join_bodies(MesherInput& input, const SheetSoup& sheets, const ContactOptio
                *found.inconsistent);
     return;
   }
+  if (found.torn) {
+    const MesherInput::Body& body = input.bodies[*found.torn];
+    not_joined(body.file,
+               "'" + body.name + "' would lose or gain more volume than the contact tolerance of " +
+                   short_number(tolerance) + " explains; use a smaller --contact-tolerance",
+               body.surface.points[0]);
+    return;
+  }
   // Meshing refuses a body that later ones cover as a whole.
   if (std::count(found.lost.begin(), found.lost.end(), 1) > 0) return;
   report_sheets(found.sheets, input);

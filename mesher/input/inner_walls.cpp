@@ -113,20 +113,21 @@ InnerWalls find_inner_walls(const CleanedSurface& surface, const ConnectedPatche
                                             InputTuning::Walls::inside_share * patches.area[p]);
   const bool grouped = !surface.groups.empty();
   const auto group = [&](Index t) { return grouped ? surface.groups[t] : 0; };
+  // A patch that lies mostly on earlier ones leaves only what they do not have.
+  const auto keeps_all = [&](Index p) { return walls.whole[p] && area_inside[p] >= area_on_others[p]; };
   WallPieces pieces;
   for (Index t = 0; t < surface.triangles.size(); ++t)
-    if (const Index p = patches.of[t]; walls.whole[p] && area_inside[p] >= area_on_others[p])
-      pieces.add(corners_of(surface, t), group(t));
+    if (keeps_all(patches.of[t])) pieces.add(corners_of(surface, t), group(t));
   for (const WallTriangle& w : divided.sheets) {
     const Index p = patches.of[w.source];
-    if (walls.whole[p]) continue;
-    if (bounds[p] && is_inside(w))
+    if (keeps_all(p)) continue;
+    if ((bounds[p] || walls.whole[p]) && is_inside(w))
       pieces.add(w.corners, group(w.source));
     else
       walls.drop(w.area(), w.centre());
   }
   for (const WallTriangle& w : divided.repeated)
-    if (const Index p = patches.of[w.source]; walls.whole[p] && area_inside[p] < area_on_others[p])
+    if (const Index p = patches.of[w.source]; walls.whole[p] && !keeps_all(p))
       walls.drop(w.area(), w.centre());
   pieces.take(min_area, grouped, walls);
   return walls;

@@ -113,7 +113,8 @@ void validate_materials(const MesherInput& input) {
 }
 
 /// Joins bodies and sheets, together with walls of their files.
-/// \return false, with a note why, if walls prevent that; nothing else has changed then
+/// \return false, with a note why in place of those that keep the walls, if that fails; nothing else has
+///   changed then
 bool join_with_walls(MesherInput& input, const SheetSoup& inner, const std::vector<SheetSurface>& walls,
                      const ContactOptions& contact, Progress* progress) {
   MesherInput joined = input;
@@ -122,6 +123,8 @@ bool join_with_walls(MesherInput& input, const SheetSoup& inner, const std::vect
     for (const SheetSurface& s : walls) all.add(s, joined.sheets, joined.findings);
     join_bodies(joined, all, contact, progress);
   } catch (const InputError& e) {
+    std::erase_if(input.findings,
+                  [](const Diagnostic& d) { return d.code == DiagnosticCode::walls_kept_as_sheets; });
     for (const SheetSurface& s : walls)
       input.findings.push_back({.code = DiagnosticCode::inner_walls_dropped,
                                 .file = s.file,

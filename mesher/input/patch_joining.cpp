@@ -96,7 +96,8 @@ class PatchJoiner {
 
   void find_open() {
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-      // Merging equal points frees no edges; most closed surfaces need no cleaning here.
+      // Merging equal points frees no edges, and a file that lists each triangle from both sides is a shell
+      // of its own; most closed surfaces need no cleaning here.
       if (!has_free_edges(surfaces_[i].surface.triangles)) continue;
       std::vector<Diagnostic> unused;
       CleanedSurface cleaned = clean_surface(surfaces_[i].surface, surfaces_[i].file, unused);
@@ -197,10 +198,27 @@ class PatchJoiner {
       const CleanedSurface& own = open_[k].cleaned;
       mesh.points.insert(mesh.points.end(), own.points.begin(), own.points.end());
       for (const auto& [a, b, c] : own.triangles) mesh.triangles.push_back({start + a, start + b, start + c});
-      mesh.triangle_groups.resize(mesh.triangles.size(), static_cast<std::uint32_t>(mesh.groups.size()));
-      mesh.groups.push_back({0, from.name});
+      add_groups(from, own, mesh);
     }
     return all;
+  }
+
+  /// Adds the groups of a surface's triangles: one of its name, or, if it has several, NAME:GROUP for each.
+  static void add_groups(const MaterialSurface& from, const CleanedSurface& cleaned, TriangleMesh& mesh) {
+    std::map<std::uint32_t, std::uint32_t> numbers;
+    for (const std::uint32_t g : cleaned.groups) numbers.try_emplace(g, 0);
+    if (numbers.size() <= 1) {
+      mesh.triangle_groups.resize(mesh.triangles.size(), static_cast<std::uint32_t>(mesh.groups.size()));
+      mesh.groups.push_back({0, from.name});
+      return;
+    }
+    for (auto& [g, number] : numbers) {
+      number = static_cast<std::uint32_t>(mesh.groups.size());
+      const SurfaceRegion& own = from.surface.groups[g];
+      mesh.groups.push_back(
+          {0, from.name + ":" + (own.name.empty() ? std::to_string(own.number) : own.name)});
+    }
+    for (const std::uint32_t g : cleaned.groups) mesh.triangle_groups.push_back(numbers.at(g));
   }
 
   /// \return false if the surfaces do not close together

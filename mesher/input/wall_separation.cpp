@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -102,10 +103,15 @@ InnerWalls walls_inside(const std::vector<const RepairedSurface*>& solids, const
                         const ConnectedPatches& patches, const DividedSurface& divided) {
   double area = 0;
   for (const RepairedSurface* s : solids) area += s->area;
+  std::vector<std::optional<SurfaceTree>> trees(solids.size());  // built if a point is in their box
   const auto inside = [&](const Vec3& point) {
-    return std::any_of(solids.begin(), solids.end(), [&](const RepairedSurface* s) {
-      return winding_number(s->points, s->triangles, point) >= 0.5;
-    });
+    for (std::size_t k = 0; k < solids.size(); ++k) {
+      const RepairedSurface& s = *solids[k];
+      if ((point.array() < s.low.array()).any() || (point.array() > s.high.array()).any()) continue;
+      if (!trees[k]) trees[k].emplace(s.points, s.triangles);
+      if (trees[k]->winding_number(point) >= 0.5) return true;
+    }
+    return false;
   };
   return find_inner_walls(surface, patches, divided, inside, InputTuning::Walls::min_share * area);
 }

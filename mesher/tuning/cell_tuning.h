@@ -105,6 +105,16 @@ struct CellTuning {
     static constexpr double filling_with_creases = 1.5;
   };
 
+  /// Sheets inside a body that face each other.
+  struct NarrowSheets {
+    static constexpr double cells_between = 2;  ///< as between the creases of a narrow patch
+    static constexpr double max_ratio = 256;    ///< cells are halved at most eight times
+    static constexpr double facing = 0.7;       ///< cosine: 45 degrees, as for regions that give way
+    /// Samples along a triangle: more are finer than any cells that fit in memory.
+    static constexpr double max_samples = 4096;
+    static constexpr std::size_t grain = 64;  ///< triangles that a loop hands out at a time
+  };
+
   /// Faces that close holes.
   struct Caps {
     static constexpr double min_area = 8;  ///< squared cells: smaller holes have hardly any faces

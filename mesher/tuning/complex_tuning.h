@@ -17,6 +17,9 @@ struct ComplexTuning {
   struct Contact {
     /// Bodies must be larger than this, in tolerances, or little would be left of them.
     static constexpr double min_body = 10;
+    /// Volume that moves within the tolerance may change, in tolerances times the area of a body's contacts,
+    /// and of all of it: triangles beside contacts tilt when their points move.
+    static constexpr double moved_contact = 1.1, moved_area = 0.2;
     /// Gaps and overlaps below this, in tolerances, are rounding.
     static constexpr double min_gap = 1e-6;
   };
@@ -82,6 +85,10 @@ struct ComplexTuning {
     /// a lattice point wherever it lies (as DistanceTuning::Walls::min_shown_cells). Cells are smaller where
     /// materials are thin, down to an eighth (DomainTuning::Refinement::max_levels).
     static constexpr double min_thickness = 1.25, min_refined_thickness = min_thickness / 8;
+    /// Thickness below which the outside gives way at a line in which bodies touch, voxels; it falls to
+    /// nothing at `reach`. Between faces at right angles the bodies are then joined over 1.4 voxels on either
+    /// side: less tears.
+    static constexpr double touching_thickness = 2.8;
     /// Distance over which narrow parts are looked for, voxels: that of sheets that need smaller cells
     /// (DistanceTuning::Sheets::min_cells).
     static constexpr double widest_narrow = 1.5;

@@ -144,6 +144,12 @@ struct CutTuning {
     static constexpr int max_rounds = 40, max_steps = 60;
     static constexpr std::size_t memory = 6;
     static constexpr int max_halvings = 30;
+    /// Length of the first step, in mean edges, and the share of the expected decrease that a step must reach
+    /// (Nocedal and Wright 2006, section 3.1).
+    static constexpr double first_step = 0.1, sufficient_decrease = 1e-4;
+    /// Reduction of the distortion that the regularisation counts with at least, and its least value (both as
+    /// Garanzha et al. 2021).
+    static constexpr double min_reduction = 0.1, least_epsilon = 1e-10;
     /// Relative gain of a step below which a round ends: later rounds go on from there.
     static constexpr double min_gain = 1e-4;
     /// Volume that is enough, as a share of the mean of all tets: fitting and simplification improve shapes.

@@ -21,8 +21,10 @@ class Tolerance:
 
 FLAT = Tolerance(area=1e-3, volume=1e-3, distance=1e-3, crease=1e-6)
 # A few thousand tets have chords on round surfaces: 30 around a cylinder lose 0.7 % of its volume and 0.3 % of the
-# diagonal.
-ROUND = Tolerance(area=0.02, volume=0.02, distance=0.01, crease=0.005)
+# diagonal, and bodies of an assembly share the tets.
+ROUND = Tolerance(area=0.02, volume=0.02, distance=0.02, crease=0.005)
+# Bodies that touch in a line are joined over a few cells.
+STRIP = Tolerance(area=0.05, volume=0.01, distance=0.05, crease=0.02)
 
 
 @dataclasses.dataclass

@@ -3,6 +3,7 @@
 // Bodies that touch in points and lines: what lies between them is thinner than any cell.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <set>
@@ -78,6 +79,37 @@ TEST(NarrowParts, BodiesAroundALineTouchOnlyThoseBesideThem) {
     }
     for (const auto& [tag, volume] : volumes) EXPECT_NEAR(volume, 1, 1e-6) << tag << " at " << resolution;
   }
+}
+
+TEST(NarrowParts, BodiesThatTouchInALineAreJoinedInOnePiece) {
+  for (const int resolution : {16, 23, 30}) {
+    const TetMesh mesh =
+        mesh_of({moved(unit_cube(), Vec3::Zero()), moved(unit_cube(), Vec3(1, 1, 0))}, resolution);
+    EXPECT_EQ(euler_number(mesh, [](const InterfaceTriangle& t) { return t.other.has_value(); }), 1)
+        << resolution;
+    EXPECT_EQ(euler_number(mesh, [](const InterfaceTriangle& t) { return !t.other; }), 2) << resolution;
+  }
+}
+
+/// Points at which other than two edges end that have three or more faces.
+std::size_t branch_points(const TetMesh& mesh) {
+  std::map<std::array<Index, 2>, int> faces;
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    for (std::size_t k = 0; k < 3; ++k) ++faces[ascending_edge(t.ids[k], t.ids[(k + 1) % 3])];
+  std::map<Index, int> ends;
+  for (const auto& [edge, count] : faces)
+    if (count > 2)
+      for (const Index p : edge) ++ends[p];
+  return static_cast<std::size_t>(
+      std::count_if(ends.begin(), ends.end(), [](const auto& at) { return at.second != 2; }));
+}
+
+TEST(NarrowParts, CurvesBranchWhereEightBodiesMeetAndAtTheirEndsOnly) {
+  std::vector<TriangleMesh> cubes;
+  for (const int k : {0, 1, 2, 3, 4, 5, 6, 7})
+    cubes.push_back(moved(unit_cube(), Vec3(k & 1, k >> 1 & 1, k >> 2)));
+  for (const int resolution : {18, 20, 22, 26})
+    EXPECT_EQ(branch_points(mesh_of(cubes, resolution)), 7u) << resolution;
 }
 
 }  // namespace

@@ -102,6 +102,12 @@ void expect_sheets(const TetMesh& mesh, const std::map<std::string, double>& are
   }
 }
 
+std::map<std::string, SheetStatistics> found_sheets(const TetMesh& mesh) {
+  std::map<std::string, SheetStatistics> found;
+  for (const SheetStatistics& s : sheet_statistics(mesh)) found[s.name] = s;
+  return found;
+}
+
 TEST(InnerSheets, AreFacesWithTheirExactBorder) {
   for (const int resolution : {12, 20, 33}) {
     const DenseMesh dense = mesh_of(in_box({sheet("baffle", baffle())}), resolution);
@@ -126,6 +132,20 @@ TEST(InnerSheets, ThatAreApartKeepTheirNames) {
       mesh_of(in_box({sheet("low", parallelogram({0.4, 0.4, 0.3}, {1, 0, 0}, {0, 0.8, 0})),
                       sheet("high", parallelogram({0.4, 0.4, 0.7}, {1, 0, 0}, {0, 0.8, 0}))}));
   expect_sheets(dense.mesh, {{"low", 0.8}, {"high", 0.8}}, 3.6);
+}
+
+TEST(InnerSheets, ThatAreCloserThanACellStayApart) {
+  TriangleMesh other = baffle();
+  // A cell is 0.1; a turned copy keeps at least 0.05 from the sheet.
+  for (Vec3& p : other.points) p += Vec3(-0.02, 0.05 + 0.04 * p.z(), 0);
+  const MesherInput input = in_box({sheet("baffle", baffle()), sheet("other", std::move(other))});
+  const std::map<std::string, SheetStatistics> found = found_sheets(mesh_of(input).mesh);
+  ASSERT_EQ(found.size(), 2U);
+  for (const auto& [name, s] : found) {
+    EXPECT_EQ(s.pieces, 1U) << name;
+    EXPECT_EQ(s.euler, 1) << name;
+    EXPECT_NEAR(s.area, baffle_area, 0.01 * baffle_area) << name;
+  }
 }
 
 TEST(InnerSheets, DoNotDependOnTheNumberOfThreads) {
@@ -172,12 +192,6 @@ TEST(InnerSheets, WithOneSideAreRefused) {
 }
 
 /// The sheets of a mesh by name.
-std::map<std::string, SheetStatistics> found_sheets(const TetMesh& mesh) {
-  std::map<std::string, SheetStatistics> found;
-  for (const SheetStatistics& s : sheet_statistics(mesh)) found[s.name] = s;
-  return found;
-}
-
 TEST(InnerSheets, CrossInACurveOfFourFaces) {
   const MesherInput input =
       in_box({sheet("first", parallelogram({0.4, 0.5, 0.3}, {1.2, 0.4, 0}, {0, 0, 0.4})),

@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -260,6 +261,31 @@ double SurfaceComparison::upper() const {
   return upper;
 }
 
+namespace {
+
+/// Adds the sheets of a mesh that are walls of zero thickness in the files of its surfaces.
+TetMesh with_walls(const TetMesh& part, const TetMesh& mesh, const MesherInput& input) {
+  TetMesh shown;
+  shown.points = part.points;
+  shown.interfaces = part.interfaces;
+  if (input.sheets.empty()) return shown;
+  std::set<std::string> walls, known;
+  for (const MesherInput::Sheet& s : input.sheets) walls.insert(s.group.name);
+  std::vector<std::pair<InterfaceTriangle, std::string>> sheets;
+  for (const InterfaceTriangle& t : mesh.interfaces) {
+    if (!t.is_sheet()) continue;
+    const auto group = mesh.patch_groups.find({t.pair(), t.patch});
+    sheets.emplace_back(t, group == mesh.patch_groups.end() ? "" : group->second.name);
+    if (walls.contains(sheets.back().second)) known.insert(sheets.back().second);
+  }
+  // Walls without names are called after their body, which the files do not say.
+  for (const auto& [triangle, name] : sheets)
+    if (known != walls || walls.contains(name)) shown.interfaces.push_back(triangle);
+  return shown;
+}
+
+}  // namespace
+
 SurfaceComparison compare_with_surfaces(const TetMesh& mesh, const std::vector<TriangleMesh>& surfaces,
                                         const std::vector<std::string>& names) {
   SurfaceComparison c;
@@ -270,12 +296,7 @@ SurfaceComparison compare_with_surfaces(const TetMesh& mesh, const std::vector<T
       for (const Index p : t) box.add(s.points[p]);
   c.diagonal = (box.high - box.low).norm();
   TetMesh part = compared_part(mesh, surfaces.size() > 1, c);
-  TetMesh shown = part;
-  // Walls of zero thickness in a file are sheets of its mesh.
-  if (!input.sheets.empty())
-    std::copy_if(mesh.interfaces.begin(), mesh.interfaces.end(), std::back_inserter(shown.interfaces),
-                 [](const InterfaceTriangle& t) { return t.is_sheet(); });
-  const ProjectionTree of_mesh = tree_of(shown), of_surfaces = tree_of(surfaces);
+  const ProjectionTree of_mesh = tree_of(with_walls(part, mesh, input)), of_surfaces = tree_of(surfaces);
   const double accuracy = tolerance::deviation_share * c.diagonal;
   const OpenEdges open = find_open_edges(input);
   c.open_edges = open.count;

@@ -159,10 +159,12 @@ TEST(OtherFacetings, ToleranceAboveFacetsIsReportedOrHarmless) {
     const ImprintedSurfaces imprinted = imprint_surfaces(soup, tolerance, nullptr);
     if (imprinted.unresolved) continue;
     const ComplexResult found = build_complex(imprinted, soup, 2, tolerance);
-    if (found.inconsistent) continue;
+    if (found.inconsistent || found.torn) continue;
     const double full = polygon_area(32);
-    EXPECT_NEAR(volume_of(found.complex, 1), full * 3 * 2 * half_height, 15 * tolerance);
-    EXPECT_NEAR(volume_of(found.complex, 2), full * (pin_high - pin_low), 6 * tolerance);
+    // The contact, and the faces beside it, move by at most the tolerance.
+    const double contact_area = 2 * std::numbers::pi * radius * 2 * half_height;
+    EXPECT_NEAR(volume_of(found.complex, 1), full * 3 * 2 * half_height, tolerance * contact_area);
+    EXPECT_NEAR(volume_of(found.complex, 2), full * (pin_high - pin_low), tolerance * contact_area);
   }
 }
 
