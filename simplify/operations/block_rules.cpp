@@ -12,7 +12,7 @@ namespace {
 using Features = SimplifyTuning::Features;
 
 /// Max distance of sample points of a segment from the feature edges; infinity if one exceeds `at_most`.
-/// Where creases were given up any place of a border is as good.
+/// Where creases were given up a border may be anywhere.
 double crease_distance(const SurfaceProjection& projection, const Vec3& p, const Vec3& q, double at_most) {
   double largest = 0;
   for (const double s : Features::segment_parameters) {

@@ -122,7 +122,7 @@ TEST(GivenUpZone, IsAroundTheContactOfBodiesThatAreNotJoined) {
     EXPECT_GT(f.found.chains.total(Fate::kept).length, 5) << f.name;
     EXPECT_GT(f.found.chains.total(Fate::given_up).length, 0.5) << f.name;
   }
-  // Of the open cube two at x = 0, of the other one the four at x = 2, and those beside the contact.
+  // The open cube has two at x = 0, the other one the four at x = 2, and those beside the contact.
   EXPECT_GE(exact_corners(dense), 6U);
   for (const Vec3& corner : dense.report.creases.corners)
     EXPECT_FALSE(corner.x() == 1 && corner.y() < 1 && corner.z() < 1 && corner.y() > 0) << corner.transpose();
