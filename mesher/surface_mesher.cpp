@@ -213,7 +213,7 @@ class SurfaceMeshing {
                    });
 
     DenseMesh dense = std::move(made.dense);
-    settle_features(input_, features_, dense);
+    settle_features(input_, closed_gaps_, features_, dense);
     if (has_features(input_, features_)) fit_features(dense, made.parts ? &*made.parts : nullptr);
     dense.surface = std::make_shared<const TriangleMesh>(all_surfaces(input_));
     if (!input_.holes.empty())
@@ -288,6 +288,9 @@ class SurfaceMeshing {
         return walls->contains(Vec3(x, y, z) + Vec3::Constant(0.5));
       });
     add_thin(find_thin_parts(field, elsewhere), false);
+    closed_gaps_.resize(input_.bodies.size());
+    for (const auto& [body, wall] : bodies_.changed)
+      for (const Vec3& p : wall.places) closed_gaps_[body].push_back(voxels_.to_input(p));
     for (const auto& [body, wall] : bodies_.changed)
       if (wall.gap || wall.on_purpose)
         report_.closed_gaps.push_back(
@@ -303,7 +306,7 @@ class SurfaceMeshing {
     const double cell = dense.report.cell_size;
     const auto features = std::make_shared<const FeatureSurface>(
         input_, features_.bodies, CellTuning::Patches::corner_reach * cell, dense.field,
-        features_.complex ? &*features_.complex : nullptr, bodies_.caps);
+        features_.complex ? &*features_.complex : nullptr, bodies_.caps, features_.given_up);
     if (input_.complex)
       collapse_strips(dense.mesh, *input_.complex, *features, cell, parts, stages_.progress());
     if (parts) {
@@ -315,7 +318,7 @@ class SurfaceMeshing {
     for (const InterfaceTriangle& t : dense.mesh.interfaces)
       if (const SurfaceRegion group = features->group_of(t.patch))
         dense.mesh.patch_groups[{t.pair(), t.patch}] = group;
-    if (are_exact(features_)) dense.reference = features;
+    dense.reference = features;
     dense.report.seconds_cut += stages_.seconds();
   }
 
@@ -334,6 +337,7 @@ class SurfaceMeshing {
   RefinementBudget budget_;
   SurfaceFeatures features_;
   BodyField bodies_;
+  std::vector<std::vector<Vec3>> closed_gaps_;  ///< of each body, points on their sides, input units
   std::vector<MortonKey> interface_voxels_;
   ThinSheets thin_;
 };

@@ -61,7 +61,7 @@ bool has_creases(const MesherInput& input, const FeatureAngle& angle) {
   if (angle.rule == FeatureAngle::Rule::off) return false;
   return std::any_of(input.bodies.begin(), input.bodies.end(), [&](const MesherInput::Body& b) {
     const RepairedSurface& s = b.surface;
-    return !s.intersects_itself && find_patches(s.points, s.triangles, {angle, 0}, {}, b.file).any();
+    return find_patches(s.points, s.triangles, {angle, 0}, {}, b.file).any();
   });
 }
 

@@ -2,6 +2,9 @@
 #include "common/features/crease_chains.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "common/features/crease_pieces.h"
 
 namespace tetwright {
 
@@ -74,20 +77,6 @@ std::size_t CreaseChains::count() const {
   return all;
 }
 
-void CreaseChains::give_up() {
-  using Fate = CreaseChain::Fate;
-  for (CreaseChain& chain : longest)
-    if (chain.fate == Fate::kept) {
-      chain.fate = Fate::given_up;
-      chain.line = {};
-    }
-  Total &kept = totals[static_cast<std::size_t>(Fate::kept)],
-        &given_up = totals[static_cast<std::size_t>(Fate::given_up)];
-  given_up.count += kept.count;
-  given_up.length += kept.length;
-  kept = {};
-}
-
 std::vector<InnerEdge> edges_between_groups(std::span<const Vec3> points, std::span<const Triangle> triangles,
                                             const std::vector<EdgeUse>& uses) {
   const auto differ = [](const EdgeUse& x, const EdgeUse& y) { return x.key == y.key && x.group != y.group; };
@@ -101,6 +90,30 @@ std::vector<InnerEdge> edges_between_groups(std::span<const Vec3> points, std::s
   std::vector<InnerEdge> edges = inner_edges(points, triangles, ungrouped);
   std::erase_if(edges, [&](const InnerEdge& e) { return groups[e.triangles[0]] == groups[e.triangles[1]]; });
   return edges;
+}
+
+void give_up_edges(std::vector<Vec3>& points, std::vector<SharpEdge>& edges, double piece,
+                   const std::function<bool(const Vec3&)>& is_given_up) {
+  std::vector<SharpEdge> divided;
+  for (const SharpEdge& e : edges) {
+    if (e.fate != CreaseChain::Fate::kept) {
+      divided.push_back(e);
+      continue;
+    }
+    const Vec3 a = points[e.ends[0]], b = points[e.ends[1]];
+    Index from = e.ends[0];
+    for_each_run(
+        a, b, piece, [&](const Vec3& p, const Vec3& q) { return is_given_up(p) || is_given_up(q); },
+        [&](const Vec3& p, const Vec3& q, bool lost) {
+          const bool is_last = q == b;
+          const Index to = is_last ? e.ends[1] : static_cast<Index>(points.size());
+          if (!is_last) points.push_back(q);
+          divided.push_back(
+              {{from, to}, (q - p).norm(), e.turn, lost ? CreaseChain::Fate::given_up : e.fate});
+          from = to;
+        });
+  }
+  edges = std::move(divided);
 }
 
 CreaseChains chains_of(std::span<const Vec3> points, const std::vector<SharpEdge>& edges) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,12 @@ struct SharpEdge {
 /// \param uses edge_uses() of the triangles
 std::vector<InnerEdge> edges_between_groups(std::span<const Vec3> points, std::span<const Triangle> triangles,
                                             const std::vector<EdgeUse>& uses);
+
+/// Divides kept edges where they enter and leave the region in which they are given up.
+/// \param points receives the points between
+/// \param piece as for find_crease_chains()
+void give_up_edges(std::vector<Vec3>& points, std::vector<SharpEdge>& edges, double piece,
+                   const std::function<bool(const Vec3&)>& is_given_up);
 
 /// Joins sharp edges to chains. O(points + edges); the result depends on the order of the edges only.
 CreaseChains chains_of(std::span<const Vec3> points, const std::vector<SharpEdge>& edges);

@@ -26,6 +26,9 @@ constexpr double low_share = 15.0 / 35;  ///< times the angle: edges that turn l
 constexpr double min_sharp_share = 0.5;  ///< borders with a smaller sharp fraction are removed
 constexpr double max_loose_low = 0.09;   ///< parts: up to 0.07; scans that pass the other test: 0.10
 constexpr double max_loose_high = 0.2;   ///< parts: up to 0.10; scans that pass the other test: 0.43
+/// Fraction of the area with noise above which a surface is a scan: flat cuts through scans are 6 % of their
+/// area and more, specks and the like 0.08 and 0.6 %.
+constexpr double max_noisy_share = 0.99;
 /// A surface is a staircase if its many patches have few triangles each, or if its sharp edges are those of
 /// equal boxes.
 constexpr std::size_t min_staircase_patches = 256;
@@ -235,6 +238,7 @@ struct FoundParts {
   std::vector<std::uint8_t> noisy;  ///< a flag for each triangle, or empty
   /// Parts before small ones were merged, or before all were merged as a staircase; or empty.
   std::vector<Index> before;
+  std::vector<SharpEdge> sharp;  ///< if PatchOptions::list_chains
 };
 
 CreaseChain::Fate fate_of(const InnerEdge& e, const FoundParts& result) {
@@ -267,7 +271,7 @@ void find_parts(std::span<const Vec3> points, std::span<const Triangle> triangle
   if (noisy) {
     result.noisy = merger.merge_noisy(points, triangles, edges, on_border, sharp);
     found.noisy_share = share_of(result.noisy, triangle_areas(points, triangles));
-    if (!merger.has_borders()) {
+    if (!merger.has_borders() || found.noisy_share > max_noisy_share) {
       found.verdict = Verdict::scan;
       return;
     }
@@ -301,12 +305,10 @@ FoundParts find_parts(std::span<const Vec3> points, std::span<const Triangle> tr
       (options.angle.rule == Rule::automatic ? automatic_angle : options.angle.degrees) * degree;
   find_parts(points, triangles, options, edges, on_border, sharp, result);
   if (!options.list_chains) return result;
-  std::vector<SharpEdge> listed;
   for (const InnerEdge& e : edges)
-    if (e.turn > sharp) listed.push_back({e.ends, e.length, e.turn, fate_of(e, result)});
+    if (e.turn > sharp) result.sharp.push_back({e.ends, e.length, e.turn, fate_of(e, result)});
   for (const InnerEdge& e : edges_between_groups(points, triangles, uses))
-    if (e.turn > sharp) listed.push_back({e.ends, e.length, e.turn, CreaseChain::Fate::kept_groups});
-  result.found.chains = chains_of(points, listed);
+    if (e.turn > sharp) result.sharp.push_back({e.ends, e.length, e.turn, CreaseChain::Fate::kept_groups});
   return result;
 }
 
@@ -333,6 +335,7 @@ SurfacePatches find_patches(std::span<const Vec3> points, std::span<const Triang
                             const PatchOptions& options, std::span<const std::uint32_t> groups,
                             const std::string& file) {
   FoundParts found = find_parts(points, triangles, options, groups);
+  found.found.chains = chains_of(points, found.sharp);
   // Number the patches in the order of their first triangles.
   std::vector<std::uint32_t> numbers(triangles.size(), no_index);
   std::uint32_t count = 0;
@@ -348,9 +351,14 @@ SurfacePatches find_patches(std::span<const Vec3> points, std::span<const Triang
 }
 
 CreaseChains find_crease_chains(std::span<const Vec3> points, std::span<const Triangle> triangles,
-                                PatchOptions options, std::span<const std::uint32_t> groups) {
+                                PatchOptions options, std::span<const std::uint32_t> groups,
+                                const std::function<bool(const Vec3&)>& is_given_up, double piece) {
   options.list_chains = true;
-  return std::move(find_parts(points, triangles, options, groups).found.chains);
+  FoundParts found = find_parts(points, triangles, options, groups);
+  if (!is_given_up) return chains_of(points, found.sharp);
+  std::vector<Vec3> all(points.begin(), points.end());
+  give_up_edges(all, found.sharp, piece, is_given_up);
+  return chains_of(all, found.sharp);
 }
 
 SurfacePatches find_mesh_patches(TetMesh& mesh, const FeatureAngle& angle, const std::string& file) {
@@ -366,6 +374,7 @@ SurfacePatches find_mesh_patches(TetMesh& mesh, const FeatureAngle& angle, const
                          .first->second);
   }
   FoundParts found = find_parts(mesh.points, triangles, {angle, 0, true}, groups);
+  found.found.chains = chains_of(mesh.points, found.sharp);
   std::map<MaterialPair, std::map<Index, std::uint16_t>> of_pair;
   const std::map<InterfacePatch, SurfaceRegion> given = std::move(mesh.patch_groups);
   mesh.patch_groups.clear();

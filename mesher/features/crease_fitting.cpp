@@ -12,6 +12,7 @@
 #include "mesher/cut/backtracking_displacement.h"
 #include "mesher/cut/undo_intersections.h"
 #include "mesher/features/crease_labels.h"
+#include "mesher/features/patch_specks.h"
 #include "mesher/tuning/cut_tuning.h"
 #include "tetwright/mesh_quality.h"
 #include "tetwright/resources.h"
@@ -321,8 +322,12 @@ FeatureSurface::Patch patch_of(const TetMesh& mesh, const InterfaceTriangle& t, 
   const Vec3 &a = mesh.points[t.ids[0]], &b = mesh.points[t.ids[1]], &c = mesh.points[t.ids[2]];
   const Vec3 centre = (a + b + c) / 3, normal = (b - a).cross(c - a).normalized();
   if (candidates.size() == 0) {
-    const auto place =
-        surface.nearest(centre, *sheet, Fitting::target_reach * cell, t.other ? nullptr : &normal);
+    const double reach = Fitting::target_reach * cell;
+    // Faces across a closed gap belong to the patch that the gap divides, not to its sides.
+    if (!t.other && surface.is_given_up(centre, *sheet))
+      if (const auto place = surface.nearest(centre, *sheet, reach, &normal, Fitting::alike))
+        return place->patch;
+    const auto place = surface.nearest(centre, *sheet, reach, t.other ? nullptr : &normal);
     return place ? place->patch : surface.no_patch();
   }
   FeatureSurface::Patch best = *candidates.begin();
@@ -361,6 +366,7 @@ void fit_creases(TetMesh& mesh, const FeatureSurface& surface, const MaterialFie
     for (std::size_t i = begin; i < end; ++i)
       mesh.interfaces[i].patch = patch_of(mesh, mesh.interfaces[i], labels, surface, cell);
   });
+  if (surface.gives_up_creases()) join_specks(mesh, surface, cell);
   // Beyond the borders of sheets there is nothing.
   mesh.interfaces.erase(std::remove_if(mesh.interfaces.begin() + first_inner, mesh.interfaces.end(),
                                        [&](const InterfaceTriangle& t) {

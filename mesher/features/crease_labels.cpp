@@ -115,9 +115,10 @@ FeatureLabel CreaseLabels::label_at(Index number) const {
   return patch_label(p, *sheets.begin(), is_outer ? &normal : nullptr);
 }
 
-/// The label of a point on one sheet; Kind::none if it is far from it.
+/// The label of a point on one sheet; Kind::none if it is far from it or creases are given up there.
 /// \param normal of the point's faces; null: either direction
 FeatureLabel CreaseLabels::patch_label(const Vec3& p, std::size_t sheet, const Vec3* normal) const {
+  if (surface_.is_given_up(p, sheet)) return {};
   const auto place = surface_.nearest(p, sheet, Labelling::surface_reach * cell_, normal);
   if (!place) return {};
   return {Kind::patch, {place->patch}, no_index, {}};

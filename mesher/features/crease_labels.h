@@ -51,7 +51,8 @@ class PatchSet {
 /// The feature that a boundary vertex represents.
 struct FeatureLabel {
   enum class Kind : std::uint8_t {
-    none,    ///< the surface is not near, or more than two regions meet in a curve that it does not have
+    none,    ///< the surface is not near, creases are given up, or more than two regions meet in a curve that
+             ///< it does not have
     patch,   ///< one patch
     crease,  ///< two patches, or those of a junction: one for each pair of regions
     corner

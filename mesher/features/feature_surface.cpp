@@ -6,15 +6,16 @@
 #include <map>
 #include <set>
 
+#include "common/features/crease_pieces.h"
 #include "common/parallel/parallel_sort.h"
-#include "mesher/tuning/cut_tuning.h"
 
 namespace tetwright {
 
 FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches,
                                double corner_reach, std::shared_ptr<const MaterialField> field,
-                               const ComplexPatches* complex, const std::vector<TriangleMesh>& caps)
-    : field_(std::move(field)) {
+                               const ComplexPatches* complex, const std::vector<TriangleMesh>& caps,
+                               GivenUpZone given_up)
+    : field_(std::move(field)), given_up_(std::move(given_up)) {
   Items items;
   for (const MaterialLayer& layer : input.layers) bodies_[layer.tag] = 0;
   for (std::size_t b = 0; b < input.bodies.size(); ++b) bodies_[input.bodies[b].tag] = b;
@@ -63,14 +64,43 @@ void FeatureSurface::add_triangles(const std::vector<Vec3>& points, const std::v
     for (const Index p : edge) at_corners.erase(p);
   for (const SurfaceCreases::Segment& s : found.segments) {
     if (std::binary_search(without.begin(), without.end(), s.ends)) continue;
-    items.segments.push_back({{first + s.ends[0], first + s.ends[1], first + s.ends[1]},
-                              {patch_of(s.patches[0]), patch_of(s.patches[1]), 0}});
+    add_segment(s, first, {patch_of(s.patches[0]), patch_of(s.patches[1])}, items);
     for (const Index end : s.ends)
       if (const auto corner = at_corners.find(end); corner != at_corners.end())
         for (const std::uint16_t p : s.patches) corner->second.insert(patch_of(p));
   }
-  for (const auto& [c, meeting] : at_corners)
-    corners_.push_back({points[c], {meeting.begin(), meeting.end()}});
+  for (const auto& [c, meeting] : at_corners) {
+    const std::size_t sheet = sheet_of_patch_[*meeting.begin()];
+    const bool on_one_sheet =
+        std::all_of(meeting.begin(), meeting.end(), [&](Patch p) { return sheet_of_patch_[p] == sheet; });
+    if (!on_one_sheet || !is_given_up(points[c], sheet))
+      corners_.push_back({points[c], {meeting.begin(), meeting.end()}});
+  }
+}
+
+/// Adds a segment of a crease but for the parts that are given up. Between two sheets of a complex is a
+/// junction, which is kept.
+void FeatureSurface::add_segment(const SurfaceCreases::Segment& segment, Index first,
+                                 const PatchPair& patches, Items& items) const {
+  const ProjectionTree::Kind kind{patches[0], patches[1], 0};
+  const Index a = first + segment.ends[0], b = first + segment.ends[1];
+  const std::size_t sheet = sheet_of_patch_[patches[0]];
+  const auto is_in_zone = [&](const Vec3& p) { return is_given_up(p, sheet); };
+  if (!given_up_.any() || sheet != sheet_of_patch_[patches[1]]) {
+    items.segments.push_back({{a, b, b}, kind});
+    return;
+  }
+  // Points beside the zone find the part of the crease next to them, not an end: pieces that cross its border
+  // are kept.
+  for_each_run(
+      Vec3(items.points[a]), Vec3(items.points[b]), given_up_.piece(),
+      [&](const Vec3& p, const Vec3& q) { return is_in_zone(p) && is_in_zone(q); },
+      [&](const Vec3& p, const Vec3& q, bool lost) {
+        if (lost) return;
+        const auto added = static_cast<Index>(items.points.size());
+        items.points.insert(items.points.end(), {p, q});
+        items.segments.push_back({{added, added + 1, added + 1}, kind});
+      });
 }
 
 namespace {
@@ -103,7 +133,7 @@ void FeatureSurface::add_bodies(const MesherInput& input, const std::vector<Surf
                                 double corner_reach, const std::vector<TriangleMesh>& caps, Items& items) {
   for (std::size_t b = 0; b < input.bodies.size(); ++b) {
     const RepairedSurface& surface = input.bodies[b].surface;
-    if (patches[b].verdict == SurfacePatches::Verdict::meeting && !patches[b].any()) {
+    if (are_given_up(patches[b]) && !patches[b].any()) {
       bodies_.erase(input.bodies[b].tag);
       continue;
     }
@@ -121,6 +151,12 @@ void FeatureSurface::add_bodies(const MesherInput& input, const std::vector<Surf
 
 void FeatureSurface::add_complex(const ComplexPatches& complex, double corner_reach, Items& items) {
   sheets_ = complex.sheets;
+  bodies_of_sheet_.resize(sheets_.size());
+  // Region 0 is the outside, and `bodies` counts from there.
+  for (const auto& [regions, sheet] : sheets_)
+    bodies_of_sheet_[sheet] = {
+        std::size_t{regions.first == outside_region ? regions.second : regions.first} - 1,
+        std::size_t{regions.second} - 1};
   inner_sheets_ = complex.inner_sheets;
   first_continued_ = complex.first_continued;
   sheet_of_patch_ = complex.sheet_of_patch;
@@ -152,12 +188,19 @@ std::optional<std::size_t> FeatureSurface::sheet_of(const InterfaceTriangle& fac
   return std::max(*first, *second);
 }
 
+bool FeatureSurface::is_given_up(const Vec3& p, std::size_t sheet) const {
+  if (!has_junctions()) return given_up_.contains(p, sheet);
+  return sheet < bodies_of_sheet_.size() &&
+         std::any_of(bodies_of_sheet_[sheet].begin(), bodies_of_sheet_[sheet].end(),
+                     [&](std::size_t body) { return given_up_.contains(p, body); });
+}
+
 std::optional<FeatureSurface::Place> FeatureSurface::nearest(const Vec3& p, std::size_t sheet, double at_most,
-                                                             const Vec3* facing) const {
+                                                             const Vec3* facing, double min_facing) const {
   const auto hit = triangles_.nearest_of(p, at_most, [&](const ProjectionTree::Item& item) {
     if (item.kind[1] != sheet) return false;
-    return !facing || normals_[static_cast<std::size_t>(&item - triangles_.items().data())].dot(*facing) >=
-                          CutTuning::Labelling::min_facing;
+    return !facing ||
+           normals_[static_cast<std::size_t>(&item - triangles_.items().data())].dot(*facing) >= min_facing;
   });
   if (!hit) return {};
   return Place{hit->point, normals_[hit->item], static_cast<Patch>(triangles_.items()[hit->item].kind[0])};
@@ -174,7 +217,8 @@ std::optional<FeatureSurface::Place> FeatureSurface::nearest_of_patch(const Vec3
 std::optional<Vec3> FeatureSurface::onto_patch(const Vec3& point, MaterialOrOutside first,
                                                MaterialOrOutside second, Patch patch,
                                                double max_distance) const {
-  if (patch == no_patch_) return field_->project(point, first, second, max_distance);
+  if (patch == no_patch_ || (given_up_.any() && is_given_up(point, sheet_of(patch))))
+    return field_->project(point, first, second, max_distance);
   const auto place = nearest_of_patch(point, patch, max_distance);
   if (!place) return {};
   return place->point;

@@ -15,6 +15,8 @@
 #include "common/geometry/projection_tree.h"
 #include "mesher/domain/material_field.h"
 #include "mesher/features/complex_patches.h"
+#include "mesher/features/given_up_zone.h"
+#include "mesher/tuning/cut_tuning.h"
 #include "tetwright/mesher_input.h"
 #include "tetwright/surface_mesh.h"
 #include "tetwright/tet_mesh.h"
@@ -49,9 +51,10 @@ class FeatureSurface : public ReferenceSurface {
   /// \param caps of each body's holes, input units, or empty; each triangle continues the patch of the
   /// nearest
   ///   triangle of the body
+  /// \param given_up where there are no creases, and queries for patches go to the field
   FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach,
                  std::shared_ptr<const MaterialField> field, const ComplexPatches* complex = nullptr,
-                 const std::vector<TriangleMesh>& caps = {});
+                 const std::vector<TriangleMesh>& caps = {}, GivenUpZone given_up = {});
 
   double signed_distance(const Vec3& point, MaterialTag material) const override {
     return field_->signed_distance(point, material);
@@ -64,6 +67,7 @@ class FeatureSurface : public ReferenceSurface {
   std::optional<Vec3> onto_patch(const Vec3& point, MaterialOrOutside first, MaterialOrOutside second,
                                  Patch patch, double max_distance) const override;
   std::optional<Vec3> onto_crease(const Vec3& point, double max_distance) const override;
+  bool lacks_creases(const Vec3& point) const override { return given_up_.affects(point); }
   std::optional<Vec3> onto_corner(const Vec3& point, double max_distance) const override {
     return corner_points_.nearest(point, {}, max_distance);
   }
@@ -80,6 +84,10 @@ class FeatureSurface : public ReferenceSurface {
     const auto known = sheets_.find(std::minmax(a, b));
     return known == sheets_.end() ? std::nullopt : std::optional(known->second);
   }
+  /// True if creases are given up anywhere.
+  bool gives_up_creases() const { return given_up_.any(); }
+  /// True where the creases of a sheet are given up.
+  bool is_given_up(const Vec3& p, std::size_t sheet) const;
   bool has_inner_sheets() const { return !inner_sheets_.empty(); }
   bool is_inner(std::size_t sheet) const { return has_inner_sheets() && sheet >= sheets_.size(); }
   /// True for patches that continue an inner sheet beyond its border.
@@ -90,8 +98,9 @@ class FeatureSurface : public ReferenceSurface {
   bool has_junctions() const override { return !sheets_.empty(); }
   /// The closest point on a sheet within `at_most`.
   /// \param facing if given, only triangles whose normal is not opposite to it count
-  std::optional<Place> nearest(const Vec3& p, std::size_t sheet, double at_most,
-                               const Vec3* facing = nullptr) const;
+  /// \param min_facing smallest cosine between normals that are not opposite
+  std::optional<Place> nearest(const Vec3& p, std::size_t sheet, double at_most, const Vec3* facing = nullptr,
+                               double min_facing = CutTuning::Labelling::min_facing) const;
   /// The patch of faces that lie on no surface; queries for it go to the field.
   Patch no_patch() const { return no_patch_; }
   /// The closest point on one patch within `at_most`.
@@ -117,6 +126,7 @@ class FeatureSurface : public ReferenceSurface {
 
  private:
   std::shared_ptr<const MaterialField> field_;
+  GivenUpZone given_up_;
   Patch no_patch_ = 0;
   /// Items of the trees, until these are built.
   struct Items {
@@ -132,6 +142,8 @@ class FeatureSurface : public ReferenceSurface {
                      const std::vector<std::uint16_t>& patches, const std::vector<std::uint8_t>& rough,
                      Patch first_patch, double corner_reach, Items& items,
                      std::span<const std::array<Index, 2>> without = {});
+  void add_segment(const SurfaceCreases::Segment& segment, Index first, const PatchPair& patches,
+                   Items& items) const;
 
   std::map<MaterialTag, std::size_t> bodies_;  ///< body of each material and layer
   /// Sheet of each pair of regions of the complex, ascending; empty without a complex.
@@ -139,6 +151,7 @@ class FeatureSurface : public ReferenceSurface {
   std::map<std::pair<std::uint32_t, RegionIndex>, std::size_t> inner_sheets_;  ///< by component and region
   Patch first_continued_ = 0;
   std::vector<std::size_t> sheet_of_patch_;
+  std::vector<std::array<std::size_t, 2>> bodies_of_sheet_;  ///< of a complex; may be equal
   ProjectionTree triangles_, creases_, corner_points_;
   std::vector<Vec3> normals_;  ///< of the items of triangles_
   std::vector<Corner> corners_;

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "common/features/crease_pieces.h"
 #include "common/features/edge_uses.h"
 #include "common/geometry/projection_tree.h"
 #include "mesher/domain/material_field.h"
@@ -27,6 +28,12 @@ double patch_cell(const RepairedSurface& surface, const MesherOptions& options, 
   return std::clamp(mean_thickness, std::ldexp(cell, -halvings), cell);
 }
 
+/// How the patches of a body are found.
+PatchOptions patch_options(const MesherInput::Body& body, const MesherOptions& options, double cell) {
+  const double shown = patch_cell(body.surface, options, cell);
+  return {options.feature_angle, CellTuning::Patches::min_area * shown * shown, true};
+}
+
 /// The patches of all bodies.
 std::vector<SurfacePatches> patches_of_bodies(const MesherInput& input, const MesherOptions& options,
                                               double cell) {
@@ -35,27 +42,14 @@ std::vector<SurfacePatches> patches_of_bodies(const MesherInput& input, const Me
   std::vector<SurfacePatches> patches;
   for (const MesherInput::Body& body : input.bodies) {
     const RepairedSurface& surface = body.surface;
-    const double shown = patch_cell(surface, options, cell);
-    PatchOptions patch_options{options.feature_angle, CellTuning::Patches::min_area * shown * shown, true};
-    // Intersections of parts are creases that are not edges of the surface.
-    const bool intersecting =
-        surface.intersects_itself && options.feature_angle.rule != FeatureAngle::Rule::off;
-    if (intersecting) patch_options.angle.rule = FeatureAngle::Rule::off;
-    SurfacePatches found =
-        find_patches(surface.points, surface.triangles, patch_options, surface.groups, body.file);
-    if (intersecting) {
-      found.verdict = SurfacePatches::Verdict::intersecting;
-      patch_options.angle = options.feature_angle;
-      found.chains = find_crease_chains(surface.points, surface.triangles, patch_options, surface.groups);
-      found.chains.give_up();
-    }
-    count += found.count;
+    patches.push_back(find_patches(surface.points, surface.triangles, patch_options(body, options, cell),
+                                   surface.groups, body.file));
+    count += patches.back().count;
     if (count > max_patches)
       throw InputError(
           body.file, 0,
           "the surfaces have more than " + std::to_string(max_patches) +
               " patches between sharp edges; use a larger --feature-angle, or --feature-angle off");
-    patches.push_back(std::move(found));
   }
   return patches;
 }
@@ -81,54 +75,95 @@ SheetPatches patches_of_sheets(const MesherInput& input, const MesherOptions& op
   return result;
 }
 
-/// Drops the creases of a body except the borders of groups.
-void give_up_creases(const MesherInput::Body& body, SurfacePatches& found) {
-  if (!found.any()) return;
-  PatchOptions options;
-  options.angle.rule = FeatureAngle::Rule::off;
-  CreaseChains chains = std::move(found.chains);
-  found = find_patches(body.surface.points, body.surface.triangles, options, body.surface.groups, body.file);
-  found.verdict = SurfacePatches::Verdict::meeting;
-  found.chains = std::move(chains);
-  found.chains.give_up();
-}
+using Causes = std::vector<GivenUpZone::Causes>;
 
-/// Drops the creases of surfaces that meet others. The curves in which they meet are accurate to half a cell
-/// only, and no well-shaped tets fit between these and exact creases.
-void give_up_where_surfaces_meet(const MesherInput& input, const TetMesh& mesh,
-                                 std::vector<SurfacePatches>& patches) {
+/// Adds the points where surfaces meet that are not joined. The curves in which they meet are accurate to
+/// half a cell only, and no well-shaped tets fit between these and exact creases.
+void add_meetings(const MesherInput& input, const TetMesh& mesh, Causes& causes) {
   if (input.bodies.size() == 1) return;
   std::map<MaterialTag, std::size_t> bodies;
   for (const MaterialLayer& layer : input.layers) bodies[layer.tag] = 0;
   for (std::size_t b = 0; b < input.bodies.size(); ++b) bodies[input.bodies[b].tag] = b;
   std::vector<const InterfaceTriangle*> first_at(mesh.points.size(), nullptr);
-  std::set<std::size_t> meeting;
-  const auto add = [&](const InterfaceTriangle& t) {
-    for (const MaterialOrOutside material : {MaterialOrOutside(t.material), t.other})
-      if (const auto body = material ? bodies.find(*material) : bodies.end(); body != bodies.end())
-        meeting.insert(body->second);
-  };
+  std::vector<std::uint8_t> is_junction(mesh.points.size(), 0);
   for (const InterfaceTriangle& t : mesh.interfaces)
     for (const Index p : t.ids) {
       if (!first_at[p]) first_at[p] = &t;
-      if (first_at[p]->pair() == t.pair()) continue;
-      add(*first_at[p]);
-      add(t);
+      is_junction[p] |= first_at[p]->pair() != t.pair();
     }
-  for (const std::size_t b : meeting) give_up_creases(input.bodies[b], patches[b]);
+  std::set<std::pair<std::size_t, Index>> meeting;
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    for (const Index p : t.ids) {
+      if (!is_junction[p]) continue;
+      for (const MaterialOrOutside material : {MaterialOrOutside(t.material), t.other})
+        if (const auto body = material ? bodies.find(*material) : bodies.end(); body != bodies.end())
+          meeting.insert({body->second, p});
+    }
+  for (const auto& [body, p] : meeting) causes[body].add(mesh.points[p]);
 }
 
-/// Drops the creases of surfaces whose own gaps are closed over more than a small part of their area, since
-/// such creases would lie inside the solid.
-void give_up_where_gaps_are_closed(const MesherInput& input, const MesherReport& report,
-                                   std::vector<SurfacePatches>& patches) {
+/// Where creases of bodies are given up.
+GivenUpZone find_given_up(const MesherInput& input, const std::vector<std::vector<Vec3>>& closed_gaps,
+                          const std::vector<SurfacePatches>& patches, const DenseMesh& dense) {
+  Causes causes(patches.size());
+  if (!input.complex) add_meetings(input, dense.mesh, causes);
   for (std::size_t b = 0; b < patches.size(); ++b) {
-    double closed = 0;
-    for (const ClosedGapReport& g : report.closed_gaps)
-      if (g.gap && g.name == input.bodies[b].name) closed += g.area;
-    if (closed > CellTuning::WallBudget::max_closed_share * input.bodies[b].surface.area)
-      give_up_creases(input.bodies[b], patches[b]);
+    for (const Vec3& p : closed_gaps[b]) causes[b].add(p);
+    if (input.bodies[b].surface.intersects_itself && patches[b].any())
+      add_self_crossings(input.bodies[b].surface, causes[b]);
+    if (!patches[b].any()) causes[b] = {};
   }
+  return {std::move(causes), dense.report.cell_size};
+}
+
+/// Where creases of bodies are lost: where they are given up, and where a body that crosses itself has them
+/// inside the solid or outside of it, away from the mesh's boundary.
+class LostCreases {
+ public:
+  LostCreases(const MesherInput& input, const GivenUpZone& zone, const DenseMesh& dense)
+      : input_(input), zone_(zone), near_(CellTuning::Patches::junction_reach * dense.report.cell_size) {
+    const auto crosses_itself = [](const MesherInput::Body& body) { return body.surface.intersects_itself; };
+    if (!zone.any() || std::none_of(input.bodies.begin(), input.bodies.end(), crosses_itself)) return;
+    std::vector<ProjectionTree::Item> faces;
+    faces.reserve(dense.mesh.interfaces.size());
+    for (const InterfaceTriangle& t : dense.mesh.interfaces) faces.push_back({t.ids, {}});
+    boundary_ = ProjectionTree(dense.mesh.points, std::move(faces));
+  }
+
+  const GivenUpZone& zone() const { return zone_; }
+  bool contains(const Vec3& p, std::size_t body) const {
+    return zone_.affects(p, body) || (input_.bodies[body].surface.intersects_itself && !boundary_.empty() &&
+                                      !boundary_.any_within(p, near_));
+  }
+
+ private:
+  const MesherInput& input_;
+  const GivenUpZone& zone_;
+  double near_;
+  ProjectionTree boundary_;
+};
+
+/// Sets the fate of the sharp edges of a body that are lost. If no crease is left, the patches become those
+/// of groups.
+void give_up_creases(const MesherInput& input, std::size_t number, const LostCreases& lost,
+                     SurfaceFeatures& features) {
+  using Fate = CreaseChain::Fate;
+  using Verdict = SurfacePatches::Verdict;
+  const GivenUpZone& zone = features.given_up;
+  SurfacePatches& found = features.bodies[number];
+  if (!zone.has(number) || found.verdict != Verdict::part) return;
+  const MesherInput::Body& body = input.bodies[number];
+  const RepairedSurface& surface = body.surface;
+  CreaseChains chains = find_crease_chains(
+      surface.points, surface.triangles, features.options[number], surface.groups,
+      [&](const Vec3& p) { return lost.contains(p, number); }, zone.piece());
+  if (chains.total(Fate::kept).count == 0 && chains.total(Fate::given_up).count > 0) {
+    PatchOptions off;
+    off.angle.rule = FeatureAngle::Rule::off;
+    found = find_patches(surface.points, surface.triangles, off, surface.groups, body.file);
+    found.verdict = zone.has_only_crossings(number) ? Verdict::intersecting : Verdict::meeting;
+  }
+  found.chains = std::move(chains);
 }
 
 /// The edges with one triangle, around holes that are not flat: the mesh rounds into their caps.
@@ -143,42 +178,51 @@ ProjectionTree open_rims(const RepairedSurface& surface) {
   return {surface.points, std::move(segments)};
 }
 
-/// Leaves out what is nearer to some curves than `reach`.
-CreaseCurves away_from(const CreaseCurves& creases, const ProjectionTree& curves, double reach) {
+/// Leaves out what is in a region, and of long segments only the part there.
+/// \param piece max length of the parts that are left out as a whole
+template <class IsLost>
+CreaseCurves without(const CreaseCurves& creases, double piece, const IsLost& is_lost) {
   CreaseCurves kept;
-  const auto is_near = [&](const Vec3& p) { return curves.any_within(p, reach); };
+  kept.points = creases.points;
   for (const auto& [a, b] : creases.segments) {
-    const Vec3 &from = creases.points[a], &to = creases.points[b];
-    // Long segments lose only their ends.
-    const int pieces = std::max(1, static_cast<int>(std::ceil((to - from).norm() / reach)));
-    for (int k = 0; k < pieces; ++k) {
-      const Vec3 p = from + (to - from) * k / pieces, q = from + (to - from) * (k + 1) / pieces;
-      if (is_near(p) || is_near(q)) continue;
-      const auto first = static_cast<Index>(kept.points.size());
-      kept.points.insert(kept.points.end(), {p, q});
-      kept.segments.push_back({first, first + 1});
-    }
+    Index from = a;
+    for_each_run(
+        creases.points[a], creases.points[b], piece,
+        [&](const Vec3& p, const Vec3& q) { return is_lost(p) || is_lost(q); },
+        [&, end = b](const Vec3&, const Vec3& q, bool lost) {
+          const bool is_last = q == creases.points[end];
+          const Index to = is_last ? end : static_cast<Index>(kept.points.size());
+          if (!is_last) kept.points.push_back(q);
+          if (!lost) kept.segments.push_back({from, to});
+          from = to;
+        });
   }
   std::copy_if(creases.corners.begin(), creases.corners.end(), std::back_inserter(kept.corners),
-               [&](const Vec3& p) { return !is_near(p); });
+               [&](const Vec3& p) { return !is_lost(p); });
   return kept;
 }
 
-/// Reports patches and creases. Omits the creases of surfaces that meet others or themselves, as they may lie
-/// inside the solid, and those at open rims.
-void report_features(const MesherInput& input, const std::vector<SurfacePatches>& patches,
+/// Leaves out what is nearer to some curves than `reach`.
+CreaseCurves away_from(const CreaseCurves& creases, const ProjectionTree& curves, double reach) {
+  return without(creases, reach, [&](const Vec3& p) { return curves.any_within(p, reach); });
+}
+
+/// Reports patches and creases. Omits creases that are given up, and those at open rims, where the mesh
+/// rounds into the cap of a hole.
+void report_features(const MesherInput& input, const SurfaceFeatures& features, const LostCreases& lost,
                      MesherReport& report) {
+  const std::vector<SurfacePatches>& patches = features.bodies;
   for (std::size_t b = 0; b < patches.size(); ++b) {
     const RepairedSurface& surface = input.bodies[b].surface;
-    const bool exact = patches[b].verdict != SurfacePatches::Verdict::meeting &&
-                       patches[b].verdict != SurfacePatches::Verdict::intersecting;
-    if (patches[b].any() && exact && !input.complex) {
+    if (patches[b].any() && !input.complex) {
       CreaseCurves creases;
       creases.add(find_creases(surface.points, surface.triangles, patches[b].patches,
                                CellTuning::Patches::corner_reach * report.cell_size, patches[b].rough),
                   surface.points);
       if (surface.closed < surface.triangles.size())
         creases = away_from(creases, open_rims(surface), CellTuning::Patches::rim_reach * report.cell_size);
+      if (lost.zone().has(b))
+        creases = without(creases, lost.zone().piece(), [&](const Vec3& p) { return lost.contains(p, b); });
       report.creases.add(creases);
     }
     report.features.push_back({input.bodies[b].name, patches[b]});
@@ -194,9 +238,10 @@ ProjectionTree touching_lines(const ComplexPatches& complex) {
   return {complex.points, std::move(segments)};
 }
 
-/// Reports the creases of a complex: for each sheet, those between its patches. Omits those at lines in which
-/// bodies touch, where the mesh joins them over a few cells.
-void report_complex_creases(const MesherInput& input, const ComplexPatches& found, MesherReport& report) {
+/// Reports the creases of a complex: for each sheet, those between its patches that are not given up. Omits
+/// those at lines in which bodies touch, where the mesh joins them over a few cells.
+void report_complex_creases(const MesherInput& input, const ComplexPatches& found, const LostCreases& lost,
+                            MesherReport& report) {
   std::vector<std::vector<Triangle>> triangles(found.sheets.size());
   std::vector<std::vector<std::uint16_t>> of_triangles(found.sheets.size());
   for (std::size_t t = 0; t < input.complex->faces.size(); ++t) {
@@ -204,14 +249,25 @@ void report_complex_creases(const MesherInput& input, const ComplexPatches& foun
     triangles[sheet].push_back(found.triangles[t]);
     of_triangles[sheet].push_back(found.patches[t]);
   }
-  CreaseCurves creases;
-  for (std::size_t s = 0; s < triangles.size(); ++s)
+  std::vector<std::pair<RegionIndex, RegionIndex>> regions(triangles.size());
+  for (const auto& [pair, sheet] : found.sheets) regions[sheet] = pair;
+  const ProjectionTree lines = touching_lines(found);
+  for (std::size_t s = 0; s < triangles.size(); ++s) {
+    CreaseCurves creases;
     creases.add(find_creases(input.complex->points, triangles[s], of_triangles[s],
                              CellTuning::Patches::corner_reach * report.cell_size, found.rough),
                 input.complex->points);
-  if (const ProjectionTree lines = touching_lines(found); !lines.empty())
-    creases = away_from(creases, lines, CellTuning::Patches::rim_reach * report.cell_size);
-  report.creases.add(creases);
+    if (lost.zone().any())
+      creases = without(creases, lost.zone().piece(), [&](const Vec3& p) {
+        const auto is_given_up = [&](RegionIndex r) {
+          return r != outside_region && lost.contains(p, std::size_t{r} - 1);
+        };
+        return is_given_up(regions[s].first) || is_given_up(regions[s].second);
+      });
+    if (!lines.empty())
+      creases = away_from(creases, lines, CellTuning::Patches::rim_reach * report.cell_size);
+    report.creases.add(creases);
+  }
 }
 
 /// Drops creases that later bodies carve away, and creases near curves where three regions meet, which are
@@ -226,13 +282,11 @@ void keep_visible(CreaseCurves& creases, const MesherInput& input, const DenseMe
   const ProjectionTree tree(std::move(junctions.points), std::move(segments));
   const auto is_hidden = [&](const Vec3& p) {
     if (tree.nearest(p, {}, near)) return true;
-    const auto shows = [&](MaterialTag tag) {
-      return std::abs(dense.field->signed_distance(p, tag)) <= near;
+    const auto shows = [&](const auto& material) {
+      return std::abs(dense.field->signed_distance(p, material.tag)) <= near;
     };
-    return std::none_of(input.bodies.begin(), input.bodies.end(),
-                        [&](const auto& b) { return shows(b.tag); }) &&
-           std::none_of(input.layers.begin(), input.layers.end(),
-                        [&](const auto& l) { return shows(l.tag); });
+    return std::none_of(input.bodies.begin(), input.bodies.end(), shows) &&
+           std::none_of(input.layers.begin(), input.layers.end(), shows);
   };
   std::erase_if(creases.segments, [&](const std::array<Index, 2>& s) {
     return is_hidden(creases.points[s[0]]) || is_hidden(creases.points[s[1]]) ||
@@ -253,7 +307,11 @@ void allow_for_chamfers(MesherReport& report) {
 }  // namespace
 
 SurfaceFeatures find_features(const MesherInput& input, const MesherOptions& options, double cell) {
-  return {patches_of_bodies(input, options, cell), patches_of_sheets(input, options, cell), {}};
+  SurfaceFeatures found{patches_of_bodies(input, options, cell), {}, {}, {}, {}};
+  for (const MesherInput::Body& body : input.bodies)
+    found.options.push_back(patch_options(body, options, cell));
+  found.sheets = patches_of_sheets(input, options, cell);
+  return found;
 }
 
 bool has_features(const MesherInput& input, const SurfaceFeatures& features) {
@@ -263,19 +321,15 @@ bool has_features(const MesherInput& input, const SurfaceFeatures& features) {
                      [](const MesherInput::Body& body) { return !body.surface.groups.empty(); });
 }
 
-bool are_exact(const SurfaceFeatures& features) {
-  return std::none_of(features.bodies.begin(), features.bodies.end(), [](const SurfacePatches& p) {
-    return p.verdict == SurfacePatches::Verdict::meeting && p.any();
-  });
-}
-
-void settle_features(const MesherInput& input, SurfaceFeatures& features, DenseMesh& dense) {
-  if (!input.complex) give_up_where_surfaces_meet(input, dense.mesh, features.bodies);
-  give_up_where_gaps_are_closed(input, dense.report, features.bodies);
-  report_features(input, features.bodies, dense.report);
+void settle_features(const MesherInput& input, const std::vector<std::vector<Vec3>>& closed_gaps,
+                     SurfaceFeatures& features, DenseMesh& dense) {
+  features.given_up = find_given_up(input, closed_gaps, features.bodies, dense);
+  const LostCreases lost(input, features.given_up, dense);
+  for (std::size_t b = 0; b < features.bodies.size(); ++b) give_up_creases(input, b, lost, features);
+  report_features(input, features, lost, dense.report);
   if (input.complex) {
     features.complex = complex_patches(input, features.bodies, features.sheets, dense.report.cell_size);
-    report_complex_creases(input, *features.complex, dense.report);
+    report_complex_creases(input, *features.complex, lost, dense.report);
   } else if (has_features(input, features)) {
     keep_visible(dense.report.creases, input, dense);
   }

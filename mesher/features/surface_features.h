@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mesher/features/complex_patches.h"
+#include "mesher/features/given_up_zone.h"
 #include "tetwright/mesher.h"
 #include "tetwright/mesher_input.h"
 
@@ -13,8 +14,10 @@ namespace tetwright {
 /// The patches of all surfaces of an input. Creases are the borders between them.
 struct SurfaceFeatures {
   std::vector<SurfacePatches> bodies;
+  std::vector<PatchOptions> options;      ///< by which the patches of each body were found
   SheetPatches sheets;                    ///< of the complex, if there is one
   std::optional<ComplexPatches> complex;  ///< likewise; set by settle_features()
+  GivenUpZone given_up;                   ///< set by settle_features()
 };
 
 /// Finds the patches of bodies and sheets.
@@ -25,12 +28,10 @@ SurfaceFeatures find_features(const MesherInput& input, const MesherOptions& opt
 /// True if there are creases, junctions or named groups to fit.
 bool has_features(const MesherInput& input, const SurfaceFeatures& features);
 
-/// False if the creases of a surface with groups were given up, because it meets another without being joined
-/// or gaps of it are closed: the borders of its groups are then accurate to a cell only.
-bool are_exact(const SurfaceFeatures& features);
-
-/// Gives up creases that the finished mesh cannot have, and reports the others in `dense.report`: `features`,
-/// `creases`, and the slack that they cause in expected volumes.
-void settle_features(const MesherInput& input, SurfaceFeatures& features, DenseMesh& dense);
+/// Gives up creases where the finished mesh cannot have them, and reports the others in `dense.report`:
+/// `features`, `creases`, and the slack that they cause in expected volumes.
+/// \param closed_gaps of each body, points on the sides of gaps that are closed, input units
+void settle_features(const MesherInput& input, const std::vector<std::vector<Vec3>>& closed_gaps,
+                     SurfaceFeatures& features, DenseMesh& dense);
 
 }  // namespace tetwright

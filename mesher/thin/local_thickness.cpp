@@ -456,11 +456,16 @@ ThinWallPlan plan_thin_walls(const LocalThickness& measured) {
     const bool same = !plan.changed.empty() && &c != changes.data() && (&c)[-1].region == c.region &&
                       (&c)[-1].gap == c.gap && (&c)[-1].on_purpose == c.on_purpose;
     if (!same)
-      plan.changed.push_back({c.gap, c.thickness,
-                              std::ldexp(Walls::min_shown_cells, -measured.regions[c.region].depth), 0,
-                              c.place, c.on_purpose});
+      plan.changed.push_back({c.gap,
+                              c.thickness,
+                              std::ldexp(Walls::min_shown_cells, -measured.regions[c.region].depth),
+                              0,
+                              c.place,
+                              c.on_purpose,
+                              {}});
     ChangedWall& w = plan.changed.back();
     w.area += c.area;
+    if (c.gap) w.places.push_back(c.place);
     if (c.thickness < w.thickness) w.thickness = c.thickness, w.place = c.place;
   }
   // Areas smaller than a finest cell are noise from surfaces that merely pass close to each other.

@@ -70,6 +70,7 @@ struct ChangedWall {
   double area = 0;            ///< of one side, squared voxels
   Vec3 place = Vec3::Zero();  ///< where it is thinnest, voxels
   bool on_purpose = false;    ///< within --min-gap or --min-thickness
+  std::vector<Vec3> places;   ///< of a gap: points on its sides, one for each cell, voxels
 };
 
 struct ThinWallPlan {

@@ -103,9 +103,6 @@ struct CellTuning {
     static constexpr double max_limit_cells = 16;
     /// Factor on the number of well-shaped tets that fill a thin wall, if its rims stay sharp.
     static constexpr double filling_with_creases = 1.5;
-    /// Share of a surface's area with closed gaps above which its creases are dropped, as they would lie
-    /// inside the solid.
-    static constexpr double max_closed_share = 0.01;
   };
 
   /// Sheets inside a body that face each other.
@@ -129,6 +126,19 @@ struct CellTuning {
     /// Cosine between the normals of a flat cap and its faces: 60 degrees, as the faces of its neighbours may
     /// be as near.
     static constexpr double min_facing = 0.5;
+  };
+
+  /// Creases that the mesh cannot have: at closed gaps they would lie inside the solid, and where bodies that
+  /// are not joined meet or a surface crosses itself the mesh is accurate to half a cell only.
+  struct GivenUp {
+    /// Distance, cells, within which creases are given up: half a cell for the position of such a curve, and
+    /// room for well-shaped tets between it and a crease that is exact.
+    static constexpr double reach = 2;
+    /// Further distance, cells, within which creases are not reported nor borders of patches kept: as long as
+    /// edges, since an edge from within the reach does not show where it crosses a crease.
+    static constexpr double beside = 1.5;
+    /// Distance, in longest edges of two triangles, within which a point is on a triangle: above rounding.
+    static constexpr double on_triangle = 1e-9;
   };
 
   /// Resolution of surfaces and their patches.

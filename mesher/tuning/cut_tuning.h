@@ -160,6 +160,9 @@ struct CutTuning {
   struct Fitting {
     /// Max distance of a point from its target, cells.
     static constexpr double target_reach = 4;
+    /// Cosine between normals from which a face and a patch that is not fitted may belong together: 60
+    /// degrees.
+    static constexpr double alike = 0.5;
     /// Quality that tets must keep in each pass, in multiples of tangent_of_bad_tet: early passes favour
     /// shapes, later ones exact creases.
     static constexpr double pass_floors[] = {1, 1, 0.5, 0.5, 0.2, 0.2, 0.05, 0.05};

@@ -85,9 +85,13 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
     bool sheet = edges[i].sheet;
     while (j < edges.size() && edges[j].key == edges[i].key) sheet |= edges[j++].sheet;
     const auto p = static_cast<Index>(edges[i].key >> 32), q = static_cast<Index>(edges[i].key);
-    // A given surface with patches provides its own feature edges, but not those of sheets.
-    if ((j - i != 2 || ((!given_patches_ || sheet) && edges[i].patch != edges[i + 1].patch)) && complete(p) &&
-        complete(q) && (sheet || !given_has_curve(mesh, p, q))) {
+    // A given surface with patches provides its own feature edges, but not those of sheets, nor where it
+    // gives up creases.
+    const auto is_own = [&] {
+      return !given_patches_ || sheet || lacks_creases((mesh.position(p) + mesh.position(q)) / 2);
+    };
+    if ((j - i != 2 || (edges[i].patch != edges[i + 1].patch && is_own())) && complete(p) && complete(q) &&
+        (sheet || !given_has_curve(mesh, p, q, j - i != 2))) {
       const Index a = points.number(p), b = points.number(q);
       segments.push_back({{a, b, b}, {}});
     }
@@ -104,8 +108,8 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
   curves_ = ProjectionTree(std::move(points.points), std::move(segments));
 }
 
-bool SurfaceProjection::given_has_curve(const EditableMesh& mesh, Index p, Index q) const {
-  if (!given_patches_ || !given_->has_junctions()) return false;
+bool SurfaceProjection::given_has_curve(const EditableMesh& mesh, Index p, Index q, bool junction) const {
+  if (!given_patches_ || (junction && !given_->has_junctions())) return false;
   const Vec3 &a = mesh.position(p), &b = mesh.position(q);
   const double reach = SimplifyTuning::Projection::same_curve_share * (b - a).norm() / mesh.space().scale();
   return given_->onto_crease(mesh.space().to_input((a + b) / 2), reach).has_value();

@@ -35,6 +35,10 @@ class SurfaceProjection {
   bool has_patches() const { return has_patches_; }
   /// Whether the mesh has sheets, which are kept like patches.
   bool has_sheets() const { return has_sheets_; }
+  /// Whether the given surface gives up the creases at a point.
+  bool lacks_creases(const Vec3& p) const {
+    return given_patches_ && given_->lacks_creases(mesh_->space().to_input(p));
+  }
   /// The nearest or nearly nearest point to p on a patch of the interface between two regions, within
   /// `max_distance`.
   std::optional<Vec3> onto_surface(const Vec3& p, RegionId first, RegionId second, PatchId patch,
@@ -45,8 +49,8 @@ class SurfaceProjection {
   std::optional<Vec3> onto_corner(const Vec3& p, double max_distance) const;
 
  private:
-  /// Whether the given surface itself has the junction curve that a junction edge of the mesh follows.
-  bool given_has_curve(const EditableMesh& mesh, Index p, Index q) const;
+  /// Whether the given surface itself has the curve that a junction edge or patch border of the mesh follows.
+  bool given_has_curve(const EditableMesh& mesh, Index p, Index q, bool junction) const;
   /// The nearer of `own` and the given surface's answer, if that has patches.
   std::optional<Vec3> nearer(const Vec3& p, const std::optional<Vec3>& own, double max_distance,
                              std::optional<Vec3> (ReferenceSurface::*onto)(const Vec3&, double) const) const;

@@ -12,10 +12,12 @@ namespace {
 using Features = SimplifyTuning::Features;
 
 /// Max distance of sample points of a segment from the feature edges; infinity if one exceeds `at_most`.
+/// Where creases were given up a border may be anywhere.
 double crease_distance(const SurfaceProjection& projection, const Vec3& p, const Vec3& q, double at_most) {
   double largest = 0;
   for (const double s : Features::segment_parameters) {
     const Vec3 at = p + s * (q - p);
+    if (projection.lacks_creases(at)) continue;
     const auto on = projection.onto_curve(at, at_most);
     if (!on) return std::numeric_limits<double>::infinity();
     largest = std::max(largest, (*on - at).norm());

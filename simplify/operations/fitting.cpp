@@ -38,6 +38,7 @@ Outcome fit_to_crease(Workspace& ws, const BlockRules& rules, float floor) {
   const int dimension = star.dimension();
   const double reach = Fitting::reach * shortest_edge(star);
   const Vec3& c = star.centre_position;
+  if (rules.surface.projection->lacks_creases(c)) return Outcome::no_candidate;
   const auto on = dimension == 1   ? rules.surface.projection->onto_curve(c, reach)
                   : dimension == 0 ? rules.surface.projection->onto_corner(c, reach)
                                    : std::nullopt;

@@ -69,10 +69,10 @@ std::string feature_line(const FeatureReport& f) {
       line += "none; its edges look like those of a scan (" + loose() + ")";
       break;
     case Verdict::intersecting:
-      line += "not searched for; the surface intersects itself";
+      line += "none kept; all are where the surface intersects itself";
       break;
     case Verdict::meeting:
-      line += "none kept; the surface meets another one, or gaps of it are closed";
+      line += "none kept; all are where the surface meets another one or itself, or gaps are closed";
       break;
     case Verdict::staircase:
       line += "none; its edges look like those of voxels (--feature-angle DEGREES keeps them)";
@@ -102,7 +102,7 @@ std::string lost_curves_line(const FeatureReport& f) {
   };
   add(Fate::faded, "fade out");
   add(Fate::small, "at patches that are too small");
-  add(Fate::given_up, "given up");
+  add(Fate::given_up, "given up where surfaces cross or meet or gaps are closed");
   return lost.empty() ? "" : printable("curves of '" + f.name + "' that are not kept: " + lost);
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -58,6 +59,9 @@ class ReferenceSurface {
   virtual bool has_patches() const { return false; }
   /// Whether onto_crease() and onto_corner() also know the curves in which three or more interfaces meet.
   virtual bool has_junctions() const { return false; }
+  /// True where creases that bound patches were given up: onto_crease() does not know them, and borders of
+  /// patches in the mesh are preserved like its junction curves.
+  virtual bool lacks_creases(const Vec3& /*point*/) const { return false; }
   /// Nearest point of a patch of the interface between two regions within `max_distance` (input units).
   virtual std::optional<Vec3> onto_patch(const Vec3& /*point*/, MaterialOrOutside /*first*/,
                                          MaterialOrOutside /*second*/, std::uint16_t /*patch*/,
@@ -97,7 +101,7 @@ struct CreaseChain {
     noise,        ///< in or beside a part of the surface whose sharp edges are noise
     faded,        ///< within a patch: less than half of the border turns by more than the angle
     small,        ///< at a patch below PatchOptions::min_area, which was merged with its neighbour
-    given_up      ///< all creases of the surface but borders of groups were given up
+    given_up      ///< would be kept elsewhere, but the mesh cannot have it there; or in a staircase
   };
   static constexpr std::size_t fates = 6;
   Fate fate = Fate::kept;
@@ -123,8 +127,6 @@ struct CreaseChains {
 
   std::size_t count() const;
   const Total& total(CreaseChain::Fate fate) const { return totals[static_cast<std::size_t>(fate)]; }
-  /// Sets the fate of chains that are kept, but for borders of groups, to `given_up`.
-  void give_up();
 };
 
 /// A surface cut into smooth parts along its creases.
@@ -132,9 +134,10 @@ struct SurfacePatches {
   enum class Verdict : std::uint8_t {
     off,           ///< not searched
     smooth,        ///< no edge turns far enough
-    scan,          ///< sharp edges end anywhere, as in noise, on all of the surface
-    intersecting,  ///< not searched: the surface intersects itself
-    meeting,       ///< discarded: the surface meets another one, or itself where gaps are closed
+    scan,          ///< sharp edges end anywhere, as in noise, on all of the surface but specks
+    intersecting,  ///< discarded: all creases are where the surface intersects itself
+    meeting,       ///< discarded: all are where the surface meets another one, intersects itself or gaps are
+                   ///< closed
     staircase,     ///< creases nearly everywhere, as on the faces of voxels
     part           ///< there are creases
   };
@@ -179,8 +182,11 @@ SurfacePatches find_patches(std::span<const Vec3> points, std::span<const Triang
                             const std::string& file);
 
 /// The chains that find_patches() lists, for any number of patches. O(n log n).
+/// \param is_given_up where kept edges are given up, but for borders of groups; may be empty
+/// \param piece max length of the pieces of an edge that are kept or given up as a whole, unit of the surface
 CreaseChains find_crease_chains(std::span<const Vec3> points, std::span<const Triangle> triangles,
-                                PatchOptions options, std::span<const std::uint32_t> groups);
+                                PatchOptions options, std::span<const std::uint32_t> groups,
+                                const std::function<bool(const Vec3&)>& is_given_up = {}, double piece = 0);
 
 /// Cuts the boundary and the interfaces of a tet mesh into patches, each pair of materials as a separate
 /// group. Sets the patches of `mesh.interfaces`, which are computed if they are empty. Patches are numbered

@@ -118,7 +118,7 @@ TEST(CreaseChains, OfStaircasesAreGivenUp) {
   EXPECT_EQ(chains.longest.size(), CreaseChains::max_listed);
 }
 
-TEST(CreaseChains, BetweenGroupsAreKeptWhenTheOthersAreGivenUp) {
+TEST(CreaseChains, AreGivenUpWhereTheMeshCannotHaveThem) {
   const TriangleMesh s = unit_cube();
   std::vector<std::uint32_t> groups;
   for (const Triangle& t : s.triangles)
@@ -127,11 +127,13 @@ TEST(CreaseChains, BetweenGroupsAreKeptWhenTheOthersAreGivenUp) {
   EXPECT_EQ(chains.count(), 12U);
   EXPECT_EQ(chains.total(Fate::kept).count, 8U);
   EXPECT_EQ(chains.total(Fate::kept_groups).count, 4U);
-  chains.give_up();
-  EXPECT_EQ(chains.count(), 12U);
-  EXPECT_EQ(chains.total(Fate::given_up).count, 8U);
-  EXPECT_EQ(chains.total(Fate::given_up).length, 8);
+  // The half beyond x = 0.5: of four edges all, two of which are between groups or not, of four others half.
+  chains = find_crease_chains(
+      s.points, s.triangles, {automatic, 0}, groups, [](const Vec3& p) { return p.x() > 0.55; }, 0.1);
   EXPECT_EQ(chains.total(Fate::kept_groups).count, 4U);
+  EXPECT_EQ(chains.total(Fate::kept_groups).length, 4);
+  EXPECT_NEAR(chains.total(Fate::given_up).length, 3 + 2 * 0.5, 1e-9);
+  EXPECT_NEAR(chains.total(Fate::kept).length, 3 + 2 * 0.5, 1e-9);
   for (const CreaseChain& c : chains.longest) EXPECT_EQ(c.line.empty(), c.fate == Fate::given_up);
 }
 
