@@ -63,7 +63,7 @@ bool join_once(TetMesh& mesh, const std::vector<Adjacent>& pairs, const std::vec
   for (const Adjacent& a : pairs)
     for (const Index f : {a.first, a.second})
       if (!flags[f]) areas.erase(sets.root(f));
-  // Of two specks the smaller one joins the larger one.
+  // The smaller one of two specks joins the larger one.
   const auto order = [&](Index root) { return std::pair(is_speck(root) ? areas.at(root) : max_area, root); };
   std::map<Index, std::map<std::uint16_t, double>> borders;
   for (const Adjacent& a : pairs) {
