@@ -154,7 +154,8 @@ class SampledSurface {
     const Vec3 low = side * (place / side).array().floor().matrix();
     std::array<double, 27> values;
     for (int i = 0; i < 27; ++i) {
-      const Vec3 p = low + 0.5 * side * Vec3(i % 3, i / 3 % 3, i / 9);
+      const int x = i % 3, y = i / 3 % 3, z = i / 9;
+      const Vec3 p = low + 0.5 * side * Vec3(x, y, z);
       const double height = plane ? (p - sample.place).dot(sample.normal) : height_over(tree, sample, p);
       values[i] = std::copysign(tree.distance(p, 2 * Sampling::reach), height);
     }
@@ -251,8 +252,8 @@ class SurfaceEstimate {
     constexpr int n = Sampling::volume_samples;
     int inside = 0;
     for (int i = 0; i < n * n * n; ++i) {
-      const Vec3 share((i % n + sequence(i, first_step)) / n, (i / n % n + sequence(i, second_step)) / n,
-                       (i / (n * n) + 0.5) / n);
+      const int x = i % n, y = i / n % n, z = i / (n * n);
+      const Vec3 share((x + sequence(i, first_step)) / n, (y + sequence(i, second_step)) / n, (z + 0.5) / n);
       const Vec3 place = low + size.cwiseProduct(share);
       bool in = false;
       for (std::size_t b = 0; b < trees_.size() && !in; ++b) in = is_inside(b, place);
@@ -328,8 +329,8 @@ class SurfaceEstimate {
     const Vec3 low = frame_.to_grid(input_.low);
     int found = 0;
     for (int i = 0; i < n * n * n; ++i) {
-      const Vec3 share((i % n + sequence(i, first_step)) / n, (i / n % n + sequence(i, second_step)) / n,
-                       (i / (n * n) + 0.5) / n);
+      const int x = i % n, y = i / n % n, z = i / (n * n);
+      const Vec3 share((x + sequence(i, first_step)) / n, (y + sequence(i, second_step)) / n, (z + 0.5) / n);
       const Vec3 place = low + size.cwiseProduct(share);
       const double distance = tree.distance(place, depth + half);
       found += distance > depth - half && distance < depth + half && tree.winding_number(place) > 0.5;

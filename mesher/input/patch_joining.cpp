@@ -135,8 +135,8 @@ class PatchJoiner {
 
   /// The largest set of surfaces of which each has a share of its border on others of the set.
   std::vector<char> meeting(const std::vector<char>& without, double share) const {
-    std::vector<char> set;
-    for (const char w : without) set.push_back(!w);
+    std::vector<char> set(without.size());
+    std::transform(without.begin(), without.end(), set.begin(), [](char w) { return w == 0; });
     for (bool changed = true; changed;) {
       changed = false;
       for (std::size_t k = 0; k < open_.size(); ++k) {
