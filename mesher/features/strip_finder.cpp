@@ -23,6 +23,14 @@ void unite(std::vector<std::size_t>& all, const std::vector<std::size_t>& more) 
   all.erase(std::unique(all.begin(), all.end()), all.end());
 }
 
+/// True if two parts are on opposite sides of a sheet.
+bool are_across(const SheetSides& a, const SheetSides& b) {
+  return std::any_of(a.begin(), a.end(), [&](const SheetSides::Side& side) {
+    const SheetSides::Side* other = b.of(side.component);
+    return other && other->in_front != side.in_front;
+  });
+}
+
 /// Flags the points of junctions: a region touches itself nowhere else.
 std::vector<std::uint8_t> points_at_junctions(const LabelledComplex& complex) {
   std::vector<std::uint8_t> flags(complex.points.size(), 0);
@@ -66,7 +74,9 @@ void StripFinder::add_complex(const LabelledComplex& complex) {
       const LabelledComplex::Face& f = complex.faces[uses[j].triangle];
       pairs.insert(std::minmax(f.behind, f.front));
     }
-    const bool branches = pairs.size() + inner >= Strips::min_sheets;
+    // Where an inner sheet crosses a contact, both of the contact's faces count.
+    const bool branches =
+        pairs.size() + inner >= Strips::min_sheets || (inner >= 2 && j - i >= Strips::min_sheets);
     if (!branches && pairs.size() < 2) continue;
     Sheets sheets;
     for (const auto& [a, b] : pairs) sheets.push_back(*surface_.sheet_between(a, b));
@@ -143,7 +153,10 @@ std::vector<Triangle> StripFinder::faces(const TetMesh& mesh) const {
   for (const PartFace& f : part_faces(mesh, *parts_)) {
     const SheetedField::Part &a = field.part(parts_->of_tets[f.first]),
                              &b = field.part(parts_->of_tets[f.second]);
-    if (a.region != b.region) continue;
+    if (a.region != b.region) {
+      if (are_across(a.sides, b.sides) && is_near_curve(middle_of(f.ids))) found.push_back(f.ids);
+      continue;
+    }
     const auto side = [](const SheetedField::Part& part) {
       return [&part](std::uint32_t component) -> std::optional<bool> {
         const SheetSides::Side* own = part.sides.of(component);

@@ -216,6 +216,23 @@ TEST(InnerSheets, CrossInACurveOfFourFaces) {
   }
 }
 
+TEST(InnerSheets, CrossTheContactOfTwoBodies) {
+  const TriangleMesh across = parallelogram({0.3, 0.2, 0.45}, {1.4, 0.05, 0.05}, {0, 0.55, 0.05});
+  const double area = std::abs(Vec3(1.4, 0.05, 0.05).cross(Vec3(0, 0.55, 0.05)).norm());
+  for (const int resolution : {20, 30, 45}) {
+    const MesherInput input =
+        make_mesher_input({{"left", 1, make_box({0, 0, 0}, {1, 1, 1}), "left.off"},
+                           {"right", 2, make_box({1, 0, 0}, {2, 1, 1}), "right.off"}},
+                          {}, NestedRule::automatic, {}, {}, nullptr, {{sheet("fault", across)}, 0});
+    const std::map<std::string, SheetStatistics> found = found_sheets(mesh_of(input, resolution).mesh);
+    ASSERT_EQ(found.size(), 1U) << resolution;
+    const SheetStatistics& s = found.begin()->second;
+    EXPECT_EQ(s.pieces, 1U) << resolution;
+    EXPECT_EQ(s.euler, 1) << resolution;
+    EXPECT_NEAR(s.area, area, 0.005 * area) << resolution;
+  }
+}
+
 TEST(InnerSheets, BranchInACurveOfThreeFaces) {
   const TriangleMesh fan = joined(joined(parallelogram({1, 0.7, 0.3}, {0.5, 0, 0}, {0, 0, 0.4}),
                                          parallelogram({1, 0.7, 0.3}, {-0.3, 0.4, 0}, {0, 0, 0.4})),
