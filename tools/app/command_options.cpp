@@ -246,8 +246,7 @@ void add_material_options(CLI::App& app, CommandLine& c) {
            for (const std::string& text : all)
              c.options.bodies.regions.seeds.push_back(parse_seed("--region", text));
          },
-         "Call the cell between inner walls, or surfaces that close together, that contains this point NAME; "
-         "repeatable")
+         "Name the cell around this point, of inner walls or of files that close together; repeatable")
       ->expected(1)
       ->type_name("NAME@X,Y,Z")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
