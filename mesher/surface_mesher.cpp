@@ -13,7 +13,7 @@
 #include "mesher/domain/material_field.h"
 #include "mesher/features/cap_faces.h"
 #include "mesher/features/crease_fitting.h"
-#include "mesher/features/strip_collapse.h"
+#include "mesher/features/curve_tubes.h"
 #include "mesher/features/surface_features.h"
 #include "mesher/field_mesher.h"
 #include "mesher/input/expected_solids.h"
@@ -308,7 +308,8 @@ class SurfaceMeshing {
         input_, features_.bodies, CellTuning::Patches::corner_reach * cell, dense.field,
         features_.complex ? &*features_.complex : nullptr, bodies_.caps, features_.given_up);
     if (input_.complex)
-      collapse_strips(dense.mesh, *input_.complex, *features, cell, parts, stages_.progress());
+      dense.report.strips =
+          remesh_curve_tubes(dense.mesh, *input_.complex, *features, cell, parts, stages_.progress());
     if (parts) {
       const std::vector<InterfaceTriangle> sheets = sheet_faces(dense.mesh, *parts);
       dense.mesh.interfaces.insert(dense.mesh.interfaces.end(), sheets.begin(), sheets.end());

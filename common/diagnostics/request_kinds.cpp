@@ -94,6 +94,16 @@ constexpr std::array request_table = std::to_array<DiagnosticKind>({
      .cause = "Walls or gaps are thinner than the smallest cells allowed. They stay in one piece, but too "
               "thick, or closed.",
      .remedy = "A higher `--resolution` or `--max-refinement`."},
+    {.code = contacts_changed,
+     .name = "contacts-changed",
+     .severity = Severity::shortfall,
+     .yields = Yields::to_acceptance,
+     .title = "contacts differ from the input",
+     .message = "not the contacts of the input: N faces join what only meets in a curve, one at X Y Z",
+     .cause =
+         "Where four and more surfaces meet in a curve, cells are too large to keep apart what only touches "
+         "there.",
+     .remedy = "A higher `--resolution`, or a higher `--target-tets`."},
     {.code = creases_changed,
      .name = "creases-changed",
      .severity = Severity::shortfall,

@@ -12,6 +12,7 @@
 #include "mesher/cut/backtracking_displacement.h"
 #include "mesher/cut/undo_intersections.h"
 #include "mesher/features/crease_labels.h"
+#include "mesher/features/joint_fitting.h"
 #include "mesher/features/patch_specks.h"
 #include "mesher/tuning/cut_tuning.h"
 #include "tetwright/mesh_quality.h"
@@ -43,27 +44,15 @@ class Fitter {
       make_room(remaining_moves(floor));
     }
     move(last);
-    if (surface_.has_junctions()) move_one_by_one(last);
+    if (!surface_.has_junctions()) return;
+    move_one_by_one(last);
+    move_jointly(mesh_, surface_, labels_, remaining_moves(last), cell_);
   }
 
  private:
   /// The target position of vertex p if it were at `at`.
   std::optional<Vec3> place_of(Index p, const Vec3& at) const {
-    const FeatureLabel& label = labels_.of(p);
-    const FeatureSurface::Patch* patches = label.patches.begin();
-    switch (label.kind) {
-      case Kind::none:
-        return {};
-      case Kind::patch:
-        if (const auto place = surface_.nearest_of_patch(at, patches[0], Fitting::target_reach * cell_))
-          return place->point;
-        return {};
-      case Kind::crease:
-        return surface_.onto_crease_between(at, label.crease, Fitting::target_reach * cell_);
-      case Kind::corner:
-        return surface_.corners()[label.corner].point;
-    }
-    return {};
+    return feature_target(surface_, labels_.of(p), at, cell_);
   }
 
   /// The two neighbours of each point along a junction of the mesh; no entry for ends and branches.
@@ -306,11 +295,8 @@ FeatureSurface::Patch patch_of(const TetMesh& mesh, const InterfaceTriangle& t, 
   PatchSet candidates;
   bool first = true;
   for (const Index p : t.ids) {
-    const FeatureLabel& label = labels.of(p);
-    if (label.kind == Kind::none) continue;
-    PatchSet own;
-    for (const FeatureSurface::Patch patch : label.patches)
-      if (surface.sheet_of(patch) == *sheet) own.insert(patch);
+    if (labels.of(p).kind == Kind::none) continue;
+    const PatchSet own = labels.patches_on(p, *sheet);
     candidates = first ? own : candidates.common(own);
     first = false;
   }

@@ -51,6 +51,7 @@ void CreaseLabels::number_boundary() {
         points_.push_back(p);
       }
   labels_.resize(points_.size());
+  continued_.resize(points_.size());
   triangles_at_.resize(points_.size());
   tets_at_.resize(points_.size());
   for (std::size_t t = 0; t < mesh_.interfaces.size(); ++t)
@@ -86,21 +87,26 @@ void CreaseLabels::label_points() {
 }
 
 /// Erases inner sheets that only their continuations bring to a point with other sheets.
-void CreaseLabels::leave_out_continuations(const Vec3& p, std::set<std::size_t>& sheets) const {
-  if (sheets.size() < 2 || !surface_.has_inner_sheets()) return;
+/// \return the patches of these
+PatchSet CreaseLabels::leave_out_continuations(const Vec3& p, std::set<std::size_t>& sheets) const {
+  PatchSet continued;
+  if (sheets.size() < 2 || !surface_.has_inner_sheets()) return continued;
   std::erase_if(sheets, [&](std::size_t sheet) {
     if (!surface_.is_inner(sheet)) return false;
     const auto place = surface_.nearest(p, sheet, Labelling::surface_reach * cell_);
-    return !place || surface_.is_continued(place->patch);
+    if (place && !surface_.is_continued(place->patch)) return false;
+    if (place) continued.insert(place->patch);
+    return true;
   });
+  return continued;
 }
 
 /// The label of a point of a mesh with inner sheets.
-FeatureLabel CreaseLabels::label_at(Index number) const {
+FeatureLabel CreaseLabels::label_at(Index number) {
   const Vec3& p = mesh_.points[points_[number]];
   std::set<std::size_t> sheets = sheets_at(number);
   if (sheets.empty()) return {};
-  leave_out_continuations(p, sheets);
+  continued_[number] = leave_out_continuations(p, sheets);
   if (sheets.size() != 1) return junction_label(p, sheets);
   Vec3 normal = Vec3::Zero();
   bool is_outer = false;
@@ -146,10 +152,11 @@ void CreaseLabels::smooth_labels() {
   labels_ = std::move(smoothed);
 }
 
-PatchSet CreaseLabels::on_sheet(const PatchSet& patches, std::size_t sheet) const {
+PatchSet CreaseLabels::on_sheet(Index number, std::size_t sheet) const {
   PatchSet own;
-  for (const FeatureSurface::Patch p : patches)
-    if (surface_.sheet_of(p) == sheet) own.insert(p);
+  for (const PatchSet* patches : {&labels_[number].patches, &continued_[number]})
+    for (const FeatureSurface::Patch p : *patches)
+      if (surface_.sheet_of(p) == sheet) own.insert(p);
   return own;
 }
 
@@ -191,7 +198,7 @@ FeatureLabel CreaseLabels::junction_label(const Vec3& p, const std::set<std::siz
 bool CreaseLabels::crosses(const SheetEdge& edge) const {
   const FeatureLabel &a = labels_[number_[edge.u]], &b = labels_[number_[edge.v]];
   if (a.kind == Kind::none || b.kind == Kind::none) return false;
-  const PatchSet own = on_sheet(a.patches, edge.sheet), other = on_sheet(b.patches, edge.sheet);
+  const PatchSet own = on_sheet(number_[edge.u], edge.sheet), other = on_sheet(number_[edge.v], edge.sheet);
   return own.size() > 0 && other.size() > 0 && !own.meets(other);
 }
 
@@ -283,8 +290,7 @@ void CreaseLabels::take_corners() {
 std::optional<CreaseLabels::Crossing> CreaseLabels::find_crossing(const SheetEdge& edge) const {
   const Index u = edge.u, v = edge.v;
   const std::size_t sheet = edge.sheet;
-  const PatchSet a = on_sheet(labels_[number_[u]].patches, sheet),
-                 b = on_sheet(labels_[number_[v]].patches, sheet);
+  const PatchSet a = on_sheet(number_[u], sheet), b = on_sheet(number_[v], sheet);
   const Vec3 &p = mesh_.points[u], &q = mesh_.points[v];
   const Vec3 along = q - p;
   Crossing crossing{u, v, 0.5, {}, {}};
@@ -327,6 +333,8 @@ std::optional<CreaseLabels::Crossing> CreaseLabels::find_crossing(const SheetEdg
 }
 
 bool CreaseLabels::may_snap(Index point, const PatchSet& patches) const {
+  // Another sheet passes there.
+  if (continued_[number_[point]].size() > 0) return false;
   const auto& around = triangles_at_[number_[point]];
   return std::none_of(around.begin(), around.end(), [&](Index t) {
     // A triangle with all three vertices on one crease would become flat.

@@ -78,6 +78,8 @@ class CreaseLabels {
     static const FeatureLabel none;
     return number_[point] == no_index ? none : labels_[number_[point]];
   }
+  /// The patches of a boundary point on a sheet, also those that continue it beyond its border.
+  PatchSet patches_on(Index point, std::size_t sheet) const { return on_sheet(number_[point], sheet); }
   bool on_boundary(Index point) const { return number_[point] != no_index; }
   /// The boundary points, by number.
   const std::vector<Index>& points() const { return points_; }
@@ -103,11 +105,11 @@ class CreaseLabels {
     auto operator<=>(const SheetEdge&) const = default;
     bool same_ends(const SheetEdge& o) const { return u == o.u && v == o.v; }
   };
-  PatchSet on_sheet(const PatchSet& patches, std::size_t sheet) const;
   std::set<std::size_t> sheets_at(Index number) const;
-  void leave_out_continuations(const Vec3& p, std::set<std::size_t>& sheets) const;
-  FeatureLabel label_at(Index number) const;
+  PatchSet leave_out_continuations(const Vec3& p, std::set<std::size_t>& sheets) const;
+  FeatureLabel label_at(Index number);
   FeatureLabel junction_label(const Vec3& p, const std::set<std::size_t>& sheets) const;
+  PatchSet on_sheet(Index number, std::size_t sheet) const;
   bool crosses(const SheetEdge& edge) const;
   std::vector<SheetEdge> crossing_edges() const;
   std::optional<Crossing> find_crossing(const SheetEdge& edge) const;
@@ -124,9 +126,11 @@ class CreaseLabels {
   TetMesh& mesh_;
   const FeatureSurface& surface_;
   double cell_;
-  std::vector<Index> number_;                     ///< index of each point in points_; no_index: interior
-  std::vector<Index> points_;                     ///< boundary points
-  std::vector<FeatureLabel> labels_;              ///< by number
+  std::vector<Index> number_;         ///< index of each point in points_; no_index: interior
+  std::vector<Index> points_;         ///< boundary points
+  std::vector<FeatureLabel> labels_;  ///< by number
+  /// By number: patches of inner sheets that end before the point, and whose faces there are left out later.
+  std::vector<PatchSet> continued_;
   std::vector<std::vector<Index>> triangles_at_;  ///< by number: indices into mesh_.interfaces
   std::vector<std::vector<Index>> tets_at_;       ///< by number: incident tets, for tracked points only
 };

@@ -112,7 +112,7 @@ void CreaseLabels::split(Index u, Index v, double share, const FeatureLabel& giv
     std::set<std::size_t> sheets;
     for (const Index t : triangles)
       if (const auto sheet = surface_.sheet_of(mesh_.interfaces[t])) sheets.insert(*sheet);
-    leave_out_continuations(mesh_.points[middle], sheets);
+    continued_.push_back(leave_out_continuations(mesh_.points[middle], sheets));
     labels_.push_back(sheets.size() > 1 ? junction_label(mesh_.points[middle], sheets) : given);
     triangles_at_.emplace_back();
     tets_at_.emplace_back();

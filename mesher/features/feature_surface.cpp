@@ -173,15 +173,12 @@ std::optional<std::size_t> FeatureSurface::sheet_of(const InterfaceTriangle& fac
   };
   const std::optional<std::size_t> first = find(face.material), second = find(face.other);
   if (!sheets_.empty()) {
-    const auto label = [](const std::optional<std::size_t>& body) {
-      return static_cast<RegionIndex>(body ? *body + 1 : outside_region);
-    };
     if (face.other == face.material) {
-      const auto inner = inner_sheets_.find({face.patch, label(first)});
+      const auto inner = inner_sheets_.find({face.patch, region_of(face.material)});
       if (inner == inner_sheets_.end()) return {};
       return inner->second;
     }
-    return sheet_between(label(first), label(second));
+    return sheet_between(region_of(face.material), region_of(face.other));
   }
   if (!first || !second) return first ? first : second;
   if (*first == *second) return {};

@@ -78,6 +78,11 @@ class FeatureSurface : public ReferenceSurface {
   /// of a meshed outside, and between regions that have no face in common in the complex. A face with one
   /// material on both sides lies on an inner sheet, whose component is the face's patch.
   std::optional<std::size_t> sheet_of(const InterfaceTriangle& face) const;
+  /// The region of the complex that a material is.
+  RegionIndex region_of(MaterialOrOutside material) const {
+    const auto body = material ? bodies_.find(*material) : bodies_.end();
+    return static_cast<RegionIndex>(body == bodies_.end() ? outside_region : body->second + 1);
+  }
   std::size_t sheet_of(Patch patch) const { return sheet_of_patch_[patch]; }
   /// The sheet between two regions of the complex, or none.
   std::optional<std::size_t> sheet_between(RegionIndex a, RegionIndex b) const {

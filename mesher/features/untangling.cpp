@@ -19,10 +19,12 @@ using Limits = CutTuning::Untangling;
 /// The distortion of the tets of a mesh, as a function of the points that may move.
 class Distortion {
  public:
-  Distortion(std::vector<Vec3>& points, std::span<const Tet> tets, std::span<const std::uint8_t> is_locked)
-      : points_(points), tets_(tets), number_(points.size(), no_index) {
-    for (Index p = 0; p < points.size(); ++p)
-      if (!is_locked[p]) number_[p] = static_cast<Index>(free_++);
+  Distortion(std::vector<Vec3>& points, std::span<const Tet> tets, std::span<const PointFreedom> freedom)
+      : points_(points), start_(points), tets_(tets), freedom_(freedom), first_(points.size()) {
+    for (Index p = 0; p < points.size(); ++p) {
+      first_[p] = size_of_position_;
+      size_of_position_ += freedom[p].dimensions;
+    }
     double volume = 0;
     for (const Tet& t : tets) volume += std::abs(edges(t).determinant()) / 6;
     volume /= static_cast<double>(std::max<std::size_t>(1, tets.size()));
@@ -35,15 +37,21 @@ class Distortion {
 
   /// Edge of a regular tet of the mean volume.
   double size() const { return size_; }
+  /// How far all points have moved in their directions.
   VectorXd position() const {
-    VectorXd x(3 * free_);
+    VectorXd x(size_of_position_);
     for (Index p = 0; p < points_.size(); ++p)
-      if (number_[p] != no_index) x.segment<3>(3 * number_[p]) = points_[p];
+      for (int k = 0; k < freedom_[p].dimensions; ++k)
+        x[first_[p] + k] = freedom_[p].directions[k].dot(points_[p] - start_[p]);
     return x;
   }
   void move_to(const VectorXd& x) {
-    for (Index p = 0; p < points_.size(); ++p)
-      if (number_[p] != no_index) points_[p] = x.segment<3>(3 * number_[p]);
+    for (Index p = 0; p < points_.size(); ++p) {
+      if (freedom_[p].dimensions == 0) continue;
+      points_[p] = start_[p];
+      for (int k = 0; k < freedom_[p].dimensions; ++k)
+        points_[p] += x[first_[p] + k] * freedom_[p].directions[k];
+    }
   }
   double min_determinant() const {
     double least = INFINITY;
@@ -59,7 +67,7 @@ class Distortion {
   /// \param gradient receives the derivatives by the coordinates of the points that may move
   double value(double epsilon, VectorXd* gradient) const {
     double sum = 0;
-    if (gradient) *gradient = VectorXd::Zero(3 * free_);
+    if (gradient) *gradient = VectorXd::Zero(size_of_position_);
     for (const Tet& t : tets_) {
       const Matrix3d j = edges(t) * from_regular_;
       const double determinant = j.determinant(), chi = regularised(determinant, epsilon);
@@ -88,13 +96,16 @@ class Distortion {
     return e;
   }
   void add(Index p, const Vec3& slope, VectorXd& gradient) const {
-    if (number_[p] != no_index) gradient.segment<3>(3 * number_[p]) += slope;
+    for (int k = 0; k < freedom_[p].dimensions; ++k)
+      gradient[first_[p] + k] += freedom_[p].directions[k].dot(slope);
   }
 
   std::vector<Vec3>& points_;
+  std::vector<Vec3> start_;
   std::span<const Tet> tets_;
-  std::vector<Index> number_;  ///< of points that may move
-  Index free_ = 0;
+  std::span<const PointFreedom> freedom_;
+  std::vector<Eigen::Index> first_;  ///< by point, of its coordinates in position()
+  Eigen::Index size_of_position_ = 0;
   double size_;
   Matrix3d from_regular_;
 };
@@ -145,8 +156,8 @@ double minimise(Distortion& distortion, double epsilon) {
 
 }  // namespace
 
-bool untangle(std::vector<Vec3>& points, std::span<const Tet> tets, std::span<const std::uint8_t> is_locked) {
-  Distortion distortion(points, tets, is_locked);
+bool untangle(std::vector<Vec3>& points, std::span<const Tet> tets, std::span<const PointFreedom> freedom) {
+  Distortion distortion(points, tets, freedom);
   if (!(distortion.size() > 0)) return false;
   double epsilon = 1;
   for (int round = 0; round < Limits::max_rounds; ++round) {

@@ -122,19 +122,35 @@ struct CutTuning {
     static constexpr double curve_reach = 3;
     /// Faces farther than this from a sheet between their regions, cells, are strips.
     static constexpr double sheet_reach = 1.5;
-    /// Tets keep this solid angle, sr, when edges are collapsed; fitting and simplification improve them.
-    static constexpr double min_solid_angle = 1e-5;
-    /// Max rounds: each may make edges of others collapsible.
-    static constexpr int max_rounds = 12;
-    /// Steps of the search for a position, cells: from about the width of a strip to below what changes
-    /// shapes.
-    static constexpr double first_step = 0.5, last_step = 0.01;
-    /// Max distance by which points make room, cells: farther away they would get other labels.
-    static constexpr double max_room = 1;
-    /// Max sweeps over the points that make room: later ones gain little.
-    static constexpr int max_sweeps = 6;
-    /// Max edges that are split so that an edge may be collapsed: mostly it is one.
-    static constexpr std::size_t max_splits = 8;
+  };
+
+  /// Tubes around curves in which four or more sheets meet, which are meshed anew.
+  struct Tubes {
+    /// Max distance of a tube's points from the curve, and of those whose edges determine its size, cells.
+    static constexpr double reach = 8, sized_reach = 3;
+    /// Distance of the chain's vertices, in the longest edges there: no edge may pass over two vertices.
+    static constexpr double spacing = 1.2;
+    /// Step along a curve in which the spacing is read, cells.
+    static constexpr double spacing_step = 0.25;
+    /// First radii of a tube, likewise, in the order in which they are tried. Sectors must be wider than an
+    /// edge there, and faces visible from the chain's vertices; both is easier farther away, but other parts
+    /// of the surface may be there.
+    static constexpr double radii[] = {1.65, 1.4, 1.8, 1.2, 1};
+    /// Radius of the ball around a point where three or more curves meet, in that of the tubes, since the
+    /// faces between two tubes must be visible from it; and the part of it that is mapped to the point, in
+    /// the longest edges.
+    static constexpr double node_radius = 1.5, node_share = 1.2;
+    /// Max distance of a tube's points, in the longest edges.
+    static constexpr double max_growth = 4;
+    /// Rounds of growth, and passes over the points of a tube in each of them.
+    static constexpr int max_rounds = 30, max_passes = 20;
+    /// Steps along a chain within which points of an edge are brought together, and in which the boundary is
+    /// reached.
+    static constexpr int max_steps = 8, max_steps_to_boundary = 3;
+    /// Solid angles that new tets must have, and below which better ones are sought, sr.
+    static constexpr double min_solid_angle = 1e-3, good_solid_angle = 0.1;
+    /// Shape of tets that will be flat: better than all that are not positive.
+    static constexpr double shape_in_sheet = -1e-9;
   };
 
   /// Moves of a few dozen points until all tets around them are positive.
@@ -182,6 +198,18 @@ struct CutTuning {
     static constexpr int max_own_halvings = 3;
     /// Points within this distance of their target, cells, have arrived: allows for rounding.
     static constexpr double arrived = 1e-12;
+  };
+
+  /// Points that hold each other back and are moved to their targets together.
+  struct JointFitting {
+    /// Points around a group give way up to this many edges away.
+    static constexpr int rings = 2;
+    /// Max number of points in a group: larger ones have another cause than a few points in the way.
+    static constexpr std::size_t max_group = 60;
+    /// Solid angle that tets must have, sr: simplification improves them.
+    static constexpr double min_solid_angle = 1e-3;
+    /// Step by which the direction of a crease is found, cells.
+    static constexpr double tangent_step = 0.05;
   };
 };
 

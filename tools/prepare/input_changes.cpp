@@ -208,6 +208,22 @@ void find_thin_walls(PrepareRun& run) {
                                 .places = places});
 }
 
+/// Reports faces between what only meets in a curve.
+void find_strips(PrepareReport& report) {
+  if (!report.mesher || report.mesher->strips.faces == 0) return;
+  const StripReport& strips = report.mesher->strips;
+  report.diagnostics.push_back({.code = DiagnosticCode::contacts_changed,
+                                .file = report.inputs.front(),
+                                .what = "not the contacts of the input: " + std::to_string(strips.faces) +
+                                        (strips.faces == 1 ? " face joins" : " faces join") +
+                                        " what only meets in a curve, one at " + place_text(strips.place),
+                                .remedy = "raise --resolution, or accept it with --accept-changes",
+                                .asked = 0,
+                                .reached = static_cast<double>(strips.faces),
+                                .limited_by = "the size of the cells",
+                                .places = {strips.place}});
+}
+
 /// Reports creases and corners that moved away from those of the input.
 void find_changed_creases(const TetMesh& mesh, PrepareRun& run) {
   PrepareReport& report = run.report;
@@ -382,6 +398,7 @@ void find_input_changes(const TetMesh& mesh, PrepareRun& run) {
   find_uncertain_changes(run.report);
   find_changed_sheets(mesh, run);
   find_thin_walls(run);
+  find_strips(run.report);
   find_changed_creases(mesh, run);
   find_lost_patches(mesh, run);
   find_small_parts(run.report);

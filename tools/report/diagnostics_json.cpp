@@ -28,6 +28,8 @@ const char* request_name(DiagnosticCode code) {
       return "sheets";
     case DiagnosticCode::thin_walls_changed:
       return "thin_walls";
+    case DiagnosticCode::contacts_changed:
+      return "contacts";
     case DiagnosticCode::creases_changed:
       return "creases";
     case DiagnosticCode::patches_lost:

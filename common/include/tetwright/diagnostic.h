@@ -33,6 +33,7 @@ enum class DiagnosticCode : std::uint8_t {
   solid_changed,
   sheets_changed,
   thin_walls_changed,
+  contacts_changed,
   creases_changed,
   patches_lost,
   labels_lost,

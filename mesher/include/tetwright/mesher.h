@@ -115,6 +115,12 @@ struct FeatureReport {
   SurfacePatches found;  ///< without the list of the triangles
 };
 
+/// Faces between regions, or parts of one, that only meet in a curve.
+struct StripReport {
+  std::size_t faces = 0;
+  Vec3 place = Vec3::Zero();  ///< of one of them, input units
+};
+
 struct MesherReport {
   double cell_size = 0;   ///< edge of a finest cell (a voxel), input units
   int resolution = 0;     ///< finest cells along the longest side
@@ -124,6 +130,7 @@ struct MesherReport {
   std::size_t isolated_vertices = 0;  ///< components and cavities of one lattice point, omitted
   std::vector<ThinPartReport> thin_parts;
   ThickenedWallsReport thickened;
+  StripReport strips;
   std::vector<ClosedGapReport> closed_gaps;
   /// Approximate number of well-shaped tets that fill thin walls with parallel sides; 0 without any.
   std::size_t filling_tets = 0;

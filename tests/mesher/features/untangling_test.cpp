@@ -14,9 +14,10 @@ namespace {
 struct Star {
   std::vector<Vec3> points{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}, {0, 0, 0}};
   std::vector<Tet> tets;
-  std::vector<std::uint8_t> is_locked{1, 1, 1, 1, 1, 1, 0};
+  std::vector<PointFreedom> freedom = std::vector<PointFreedom>(7, {0});
 
   Star() {
+    freedom[6].dimensions = 3;
     for (const Index x : {0, 1})
       for (const Index y : {2, 3})
         for (const Index z : {4, 5}) {
@@ -38,7 +39,7 @@ TEST(Untangling, APointOutsideItsStarReturns) {
     Star star;
     star.points[6] = away;
     ASSERT_FALSE(star.all_positive());
-    EXPECT_TRUE(untangle(star.points, star.tets, star.is_locked)) << away.transpose();
+    EXPECT_TRUE(untangle(star.points, star.tets, star.freedom)) << away.transpose();
     EXPECT_TRUE(star.all_positive()) << away.transpose();
   }
 }
@@ -47,22 +48,35 @@ TEST(Untangling, LockedPointsStay) {
   Star star;
   const std::vector<Vec3> before = star.points;
   star.points[6] = {3, 1, 1};
-  untangle(star.points, star.tets, star.is_locked);
+  untangle(star.points, star.tets, star.freedom);
   for (std::size_t p = 0; p < 6; ++p) EXPECT_EQ(star.points[p], before[p]);
 }
 
 TEST(Untangling, FailsWhereNothingIsPositive) {
   Star star;
-  star.is_locked.assign(7, 1);
+  star.freedom[6].dimensions = 0;
   star.points[6] = {3, 1, 1};
-  EXPECT_FALSE(untangle(star.points, star.tets, star.is_locked));
+  EXPECT_FALSE(untangle(star.points, star.tets, star.freedom));
+}
+
+TEST(Untangling, PointsStayOnTheirLineOrPlane) {
+  for (const int dimensions : {1, 2}) {
+    Star star;
+    const Vec3 along = Vec3(1, 2, -1).normalized(), across = Vec3(1, 0, 1).normalized();
+    star.freedom[6] = {dimensions, {along, across, along.cross(across)}};
+    star.points[6] = 3 * along;
+    EXPECT_TRUE(untangle(star.points, star.tets, star.freedom));
+    EXPECT_TRUE(star.all_positive());
+    EXPECT_NEAR(star.points[6].dot(along.cross(across)), 0, 1e-12);
+    if (dimensions == 1) EXPECT_NEAR(star.points[6].dot(across), 0, 1e-12);
+  }
 }
 
 TEST(Untangling, ScaleDoesNotMatter) {
   Star star;
   star.points[6] = {2, 0.3, 0.1};
   for (Vec3& p : star.points) p *= 1e-6;
-  EXPECT_TRUE(untangle(star.points, star.tets, star.is_locked));
+  EXPECT_TRUE(untangle(star.points, star.tets, star.freedom));
 }
 
 }  // namespace
