@@ -158,7 +158,8 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
   BodyBuilder builder(input, std::move(tags), contact, caps, progress);
   builder.set_joined(std::move(joined));
   std::vector<Partition> partitions;
-  const WallApproach walls = sheets.extend > 0 ? WallApproach(surfaces, sheets.surfaces) : WallApproach({}, {});
+  const WallApproach walls =
+      sheets.extend > 0 ? WallApproach(surfaces, sheets.surfaces) : WallApproach({}, {});
   for (const SheetSurface& s : sheets.surfaces)
     if (s.divides) partitions.push_back(make_partition(s, sheets.extend, walls, input.findings));
   std::set<std::string> names;

@@ -68,7 +68,8 @@ struct BorderPoint {
 };
 
 /// The points of a border in ascending order. At corners the strip has the full width along both sides.
-std::vector<BorderPoint> border_points(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
+std::vector<BorderPoint> border_points(const std::vector<Vec3>& points,
+                                       const std::vector<Triangle>& triangles,
                                        const std::vector<BorderEdge>& border, double width) {
   DisjointSets components(points.size());
   for (const auto& [a, b, c] : triangles) components.unite(a, b), components.unite(b, c);
@@ -97,8 +98,8 @@ std::vector<BorderPoint> border_points(const std::vector<Vec3>& points, const st
   return found;
 }
 
-/// The turn of a path beside others: it turns after these by at most as much as it is away from them, or the
-/// strip would be twisted between them.
+/// The turn of a path beside others: it turns little later than these, or the strip would be twisted between
+/// them.
 std::optional<PathTurn> spread_turn(const std::vector<Vec3>& points, const std::vector<BorderPoint>& border,
                                     const std::vector<std::optional<PathTurn>>& turns, std::size_t i,
                                     const WallApproach& walls, double reach) {
@@ -109,18 +110,19 @@ std::optional<PathTurn> spread_turn(const std::vector<Vec3>& points, const std::
     if (!turns[k] || border[k].component != own.component ||
         border[k].direction.dot(own.direction) <= InputTuning::Partitions::min_cosine)
       continue;
-    const double later = turns[k]->along + (points[border[k].point] - points[own.point]).norm();
+    const double later = turns[k]->along + InputTuning::Partitions::later *
+                                               (points[border[k].point] - points[own.point]).norm();
     if (later < along) along = later, first = &*turns[k];
   }
   if (!first || (turns[i] && first == &*turns[i])) return turns[i];
-  const auto turn =
-      walls.turn_beside(points[own.point], own.direction, along, first->towards, own.length, reach);
+  const auto turn = walls.turn_beside(*first, points[own.point], own.direction, along, own.length, reach);
   return turn ? turn : turns[i];
 }
 
 /// The paths from the points of a border, or none if all are straight.
-std::vector<ContinuedPath> turned_paths(const std::vector<Vec3>& points, const std::vector<BorderPoint>& border,
-                                        double width, const WallApproach& walls) {
+std::vector<ContinuedPath> turned_paths(const std::vector<Vec3>& points,
+                                        const std::vector<BorderPoint>& border, double width,
+                                        const WallApproach& walls) {
   const double reach = InputTuning::Partitions::turn_share * width;
   std::vector<std::optional<PathTurn>> turns(border.size());
   const auto for_each_point = [&](const auto& visit) {

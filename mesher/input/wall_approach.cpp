@@ -43,6 +43,7 @@ double ray_meets(const std::array<Vec3, 3>& triangle, const Vec3& from, const Ve
 void WallApproach::Walls::add(const TriangleMesh& surface, std::uint32_t body) {
   const std::vector<Vec3>& p = surface.points;
   for (const auto& [a, b, c] : surface.triangles) {
+    if (std::max({a, b, c}) >= p.size()) continue;  // refused when the surface is cleaned
     const Vec3 normal = (p[b] - p[a]).cross(p[c] - p[a]).normalized();
     if (normal.allFinite() && normal.norm() > 0) all.push_back({{p[a], p[b], p[c]}, normal, body});
   }
@@ -127,7 +128,8 @@ std::optional<PathTurn> WallApproach::find_turn(const Vec3& from, const Vec3& di
         std::clamp((wall.cosine - Turning::narrow) / (Turning::narrowest - Turning::narrow), 0.0, 1.0);
     if (wall.distance <= (share + Turning::precision) * reach) {
       if (!(direction.dot(wall.towards) > 0) || is_hidden(from, wall.towards)) return {};
-      return PathTurn{along, wall.distance, wall.towards};
+      return PathTurn{along, wall.distance, wall.towards,
+                      from + along * direction + wall.distance * wall.towards};
     }
     along += std::max(wall.distance - reach, Turning::precision * reach);
   }
@@ -138,18 +140,26 @@ std::optional<PathTurn> WallApproach::find_turn(const Vec3& from, const Vec3& di
 bool WallApproach::is_hidden(const Vec3& point, const Vec3& direction) const {
   const double end = distance_along(point, direction);
   bool found = false;
-  sheets_.for_crossings(point, direction, [&](const Wall&, double at) {
-    found |= at > Turning::precision * end && at < end;
-  });
+  sheets_.for_crossings(point, direction,
+                        [&](const Wall&, double at) { found |= at > Turning::precision * end && at < end; });
   return found;
 }
 
-std::optional<PathTurn> WallApproach::turn_beside(const Vec3& from, const Vec3& direction, double along,
-                                                  const Vec3& towards, double length, double reach) const {
-  if (along >= std::min(distance_along(from, direction), length)) return {};
-  const double distance = distance_along(from + along * direction, towards);
-  if (distance > Turning::farthest * reach) return {};
-  return PathTurn{along, distance, towards};
+std::optional<PathTurn> WallApproach::turn_beside(const PathTurn& other, const Vec3& from,
+                                                  const Vec3& direction, double along, double length,
+                                                  double reach) const {
+  if (along >= length) return {};
+  const double farthest = Turning::farthest * reach, end = distance_along(from, direction);
+  const Vec3 place = from + along * direction;
+  if (along < end) {
+    const double distance = distance_along(place, other.towards);
+    if (distance > farthest) return {};
+    return PathTurn{along, distance, other.towards, place + distance * other.towards};
+  }
+  // Outside the fold goes on for a while, or it would end in a twist at the wall by which the path leaves.
+  if (along > end + farthest) return {};
+  const double distance = std::clamp((other.foot - place).dot(other.towards), reach / 2, farthest);
+  return PathTurn{along, distance, other.towards, place + distance * other.towards};
 }
 
 ContinuedPath WallApproach::path(const Vec3& from, const Vec3& direction, double length, double reach,

@@ -18,6 +18,7 @@ struct PathTurn {
   double along;     ///< length of the path until then
   double distance;  ///< from the wall, there
   Vec3 towards;     ///< unit, to the wall
+  Vec3 foot;        ///< on the wall
 };
 
 /// How a surface is continued from a point of its border: in three segments.
@@ -26,9 +27,9 @@ struct ContinuedPath {
 };
 
 /// The walls of bodies, as seen by surfaces that are continued to them. A surface that meets a wall at a
-/// narrow angle leaves a wedge behind, which no tet of a good shape fits into; so it turns onto the wall where
-/// it is close to it. Surfaces that run along a wall stay as they are.
-/// Input units; immutable, all functions may be called concurrently.
+/// narrow angle leaves a wedge behind, which no tet of a good shape fits into; so it turns onto the wall
+/// where it is close to it. Surfaces that run along a wall stay as they are. Input units; immutable, all
+/// functions may be called concurrently.
 class WallApproach {
  public:
   /// \param sheets those that divide bodies hide walls behind them
@@ -44,11 +45,12 @@ class WallApproach {
   /// \param normal unit, of the surface at the point, with either sign
   /// \param length of the whole path
   /// \param reach distance from a wall at which paths turn onto it
-  std::optional<PathTurn> find_turn(const Vec3& from, const Vec3& direction, const Vec3& normal, double length,
-                                    double reach) const;
+  std::optional<PathTurn> find_turn(const Vec3& from, const Vec3& direction, const Vec3& normal,
+                                    double length, double reach) const;
   /// The turn of a path beside one that turns onto a wall; nothing if the wall is not there.
-  std::optional<PathTurn> turn_beside(const Vec3& from, const Vec3& direction, double along,
-                                      const Vec3& towards, double length, double reach) const;
+  /// \param along length of the path until it turns
+  std::optional<PathTurn> turn_beside(const PathTurn& other, const Vec3& from, const Vec3& direction,
+                                      double along, double length, double reach) const;
   ContinuedPath path(const Vec3& from, const Vec3& direction, double length, double reach,
                      const std::optional<PathTurn>& turn) const;
 
