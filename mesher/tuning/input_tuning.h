@@ -121,9 +121,9 @@ struct InputTuning {
     /// Distance from the wall up to which a path turns onto it because one beside it does, in distances at
     /// which paths turn.
     static constexpr double farthest = 3;
-    /// Of the angle between wall and path after it has turned: 50 degrees, above the 45 up to which regions
-    /// between faces are narrow (ComplexTuning::Zone::facing). Walls at right angles to it, by which paths
-    /// beside leave, are met at nearly as much.
+    /// Sine and cosine of the angle between wall and path after it has turned: 50 degrees, above the 45 up to
+    /// which regions between faces are narrow (ComplexTuning::Zone::facing). Walls at right angles to it, by
+    /// which paths beside leave, are met at nearly as much.
     static constexpr double sine = 0.766, cosine = 0.643;
     /// Length of the first part of paths, at least, in distances at which paths turn.
     static constexpr double straight_share = 0.25;

@@ -345,6 +345,25 @@ TEST(Partitions, TurnOntoWallsThatTheyWouldMeetAtANarrowAngle) {
   EXPECT_LT(dense.mesh.tets.size(), straight.mesh.tets.size() / 2);
 }
 
+TEST(Partitions, TurnOntoWallsAtTheirCornersToo) {
+  const MesherInput input =
+      in_box({partition("fault", parallelogram({0.2, 0.1, 0.5}, {1, 0, 0.25}, {0, 1, 0.15}, 10))}, 0.85);
+  ASSERT_EQ(input.bodies.size(), 2U);
+  // It leaves the box by the top at one of its corners only, where it turns, and elsewhere by the sides.
+  bool at_corner = false;
+  for (const Vec3& p : input.bodies[1].surface.points) {
+    if (p.z() < high.z() - 1e-4) continue;
+    EXPECT_GT(p.x(), 0.9);
+    at_corner |= p.x() > high.x() - 1e-4 && p.y() > high.y() - 1e-4;
+  }
+  EXPECT_TRUE(at_corner);
+  const DenseMesh dense = mesh_of(input, 16);
+  EXPECT_EQ(broken_promise(dense.mesh.points, dense.mesh.tets), "");
+  EXPECT_LT(dense.mesh.tets.size(), 60'000U);
+  EXPECT_NEAR(volume_of(dense.mesh, input.bodies[0].tag) + volume_of(dense.mesh, input.bodies[1].tag), 3,
+              1e-5);
+}
+
 TEST(Partitions, ThatRunAlongAWallAreContinuedStraight) {
   const MesherInput input = with_rising(0.94, 0.015, 0.9);
   ASSERT_EQ(input.bodies.size(), 2U);
