@@ -158,8 +158,10 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
   BodyBuilder builder(input, std::move(tags), contact, caps, progress);
   builder.set_joined(std::move(joined));
   std::vector<Partition> partitions;
+  const WallApproach walls =
+      sheets.extend > 0 ? WallApproach(surfaces, sheets.surfaces) : WallApproach({}, {});
   for (const SheetSurface& s : sheets.surfaces)
-    if (s.divides) partitions.push_back(make_partition(s, sheets.extend, input.findings));
+    if (s.divides) partitions.push_back(make_partition(s, sheets.extend, walls, input.findings));
   std::set<std::string> names;
   for (const SheetSurface& s : sheets.surfaces) names.insert(s.name);
   builder.add(std::move(surfaces), nested, regions.rule, partitions, std::move(names));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mesher/input/surface_cleaning.h"
+#include "mesher/input/wall_approach.h"
 #include "tetwright/mesher_input.h"
 
 namespace tetwright {
@@ -20,11 +21,13 @@ struct Partition {
 };
 
 /// Cleans a surface that divides bodies, and continues it beyond its border in the planes of the triangles
-/// there.
+/// there, except where it would meet a wall at a narrow angle: there it turns onto the wall.
 /// \param extend length of the continuation, input units; 0: none
+/// \param walls of the bodies
 /// \throws InputError as clean_surface() does; if the continued surface would cross itself, or has too long a
 ///   border
-Partition make_partition(const SheetSurface& surface, double extend, std::vector<Diagnostic>& findings);
+Partition make_partition(const SheetSurface& surface, double extend, const WallApproach& walls,
+                         std::vector<Diagnostic>& findings);
 
 /// A body's surface together with the surfaces that divide it.
 struct PartitionedSurface {

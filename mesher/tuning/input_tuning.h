@@ -96,10 +96,41 @@ struct InputTuning {
     /// of a rectangle or a hexagon.
     static constexpr double same_side = 0.866;
     /// Smallest cosine between the sides of a corner and its middle for which the strip has its full width:
-    /// 60 degrees. Sharper ones would become arbitrarily long spikes.
+    /// 60 degrees. Sharper ones would become arbitrarily long spikes. Paths turn together up to this angle.
     static constexpr double min_cosine = 0.5;
     /// Max edges of a border, which are compared with each other: 1e8 pairs take about a second.
     static constexpr std::size_t max_border = 10'000;
+    /// Distance from a wall at which the strip turns onto it, as a share of the strip's width: about the size
+    /// of a tet where strips are as wide as a quarter of the diagonal and the mesh has a few thousand tets.
+    static constexpr double turn_share = 0.1;
+    /// By how much later a path turns than those beside it, at most, as a share of the distance between them.
+    /// Folds that run at an angle to the wall by which others leave make narrow corners there: with 1 and
+    /// with 2 tens of tets below 0.1 sr, with 1.5 a few.
+    static constexpr double later = 1.5;
+    /// Distance from a wall at which the strip turns, as a share of the distance of the border beside it:
+    /// where all of the border is near the wall, the layer between them is thin, and is no wedge.
+    static constexpr double share_left = 0.5;
+  };
+
+  /// Surfaces that are continued to the walls of bodies.
+  struct WallApproach {
+    static constexpr std::size_t leaf_size = 4;
+    /// Cosines between normals. Angles below 37 degrees are narrow: the path turns closer to the wall the
+    /// wider they are, at the full distance below 26 degrees.
+    static constexpr double narrow = 0.8, narrowest = 0.9;
+    /// Distance from the wall up to which a path turns onto it because one beside it does, in distances at
+    /// which paths turn.
+    static constexpr double farthest = 3;
+    /// Sine and cosine of the angle between wall and path after it has turned: 50 degrees, above the 45 up to
+    /// which regions between faces are narrow (ComplexTuning::Zone::facing). Walls at right angles to it, by
+    /// which paths beside leave, are met at nearly as much.
+    static constexpr double sine = 0.766, cosine = 0.643;
+    /// Length of the first part of paths, at least, in distances at which paths turn.
+    static constexpr double straight_share = 0.25;
+    /// Accuracy of the distance at which a path turns, as a share of it, and steps until then: each is as
+    /// long as the path is away from turning, and at least as long as the accuracy.
+    static constexpr double precision = 0.01;
+    static constexpr int max_steps = 2000;
   };
 
   /// Max number of labels named in messages: enough to recognise a table of labels, few enough to read.

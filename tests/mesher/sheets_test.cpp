@@ -315,6 +315,68 @@ TEST(Partitions, ThatWouldFoldAreRefused) {
   EXPECT_TRUE(holds(refusal({partition("fault", notched)}, 0.8), "would cross itself at "));
 }
 
+/// A partition from x = 0.2 to 1.2 that rises, continued by 0.8 or as asked.
+MesherInput with_rising(double height, double slope, double extend = 0.8) {
+  return in_box({partition("fault", parallelogram({0.2, 0.1, height}, {1, 0, slope}, {0, 1.3, 0}, 10))},
+                extend);
+}
+
+/// The largest x of a body on the top of the box.
+double end_on_top(const MesherInput::Body& body) {
+  double end = 0;
+  for (const Vec3& p : body.surface.points)
+    if (p.z() > high.z() - 1e-4) end = std::max(end, p.x());
+  return end;
+}
+
+TEST(Partitions, TurnOntoWallsThatTheyWouldMeetAtANarrowAngle) {
+  // Straight on, it would meet the top at x = 1.53, at 17 degrees.
+  const MesherInput input = with_rising(0.6, 0.3);
+  ASSERT_EQ(input.bodies.size(), 2U);
+  const auto& upper = input.bodies[0];
+  EXPECT_EQ(upper.name, "box_1");
+  EXPECT_GT(end_on_top(upper), 1.3);
+  EXPECT_LT(end_on_top(upper), 1.4);
+  const DenseMesh dense = mesh_of(input, 16);
+  EXPECT_EQ(broken_promise(dense.mesh.points, dense.mesh.tets), "");
+  // Continued by hand, it leaves a wedge full of the smallest cells.
+  const DenseMesh straight = mesh_of(
+      in_box({partition("fault", parallelogram({-0.3, -0.1, 0.45}, {2.4, 0, 0.72}, {0, 1.7, 0}, 10))}), 16);
+  EXPECT_LT(dense.mesh.tets.size(), straight.mesh.tets.size() / 2);
+}
+
+TEST(Partitions, TurnOntoWallsAtTheirCornersToo) {
+  const MesherInput input =
+      in_box({partition("fault", parallelogram({0.2, 0.1, 0.5}, {1, 0, 0.25}, {0, 1, 0.15}, 10))}, 0.85);
+  ASSERT_EQ(input.bodies.size(), 2U);
+  // It leaves the box by the top at one of its corners only, where it turns, and elsewhere by the sides.
+  bool at_corner = false;
+  for (const Vec3& p : input.bodies[1].surface.points) {
+    if (p.z() < high.z() - 1e-4) continue;
+    EXPECT_GT(p.x(), 0.9);
+    at_corner |= p.x() > high.x() - 1e-4 && p.y() > high.y() - 1e-4;
+  }
+  EXPECT_TRUE(at_corner);
+  const DenseMesh dense = mesh_of(input, 16);
+  EXPECT_EQ(broken_promise(dense.mesh.points, dense.mesh.tets), "");
+  EXPECT_LT(dense.mesh.tets.size(), 60'000U);
+  EXPECT_NEAR(volume_of(dense.mesh, input.bodies[0].tag) + volume_of(dense.mesh, input.bodies[1].tag), 3,
+              1e-4);
+}
+
+TEST(Partitions, ThatRunAlongAWallAreContinuedStraight) {
+  const MesherInput input = with_rising(0.94, 0.015, 0.9);
+  ASSERT_EQ(input.bodies.size(), 2U);
+  for (const auto& body : input.bodies) EXPECT_NEAR(end_on_top(body), body.name == "box_1" ? 2 : 0, 1e-9);
+}
+
+TEST(Partitions, ThatMeetWallsAtWideAnglesAreContinuedStraight) {
+  const MesherInput input = with_rising(0.1, 0.85, 0.4);
+  ASSERT_EQ(input.bodies.size(), 2U);
+  for (const auto& body : input.bodies)
+    if (body.name == "box_1") EXPECT_NEAR(end_on_top(body), 0.2 + 0.9 / 0.85, 1e-3);
+}
+
 TEST(Partitions, OutsideBodiesAreRefused) {
   EXPECT_TRUE(holds(refusal({partition("fault", parallelogram({0, 0, 3}, {2, 0, 0}, {0, 1.5, 0}))}),
                     "the partition 'fault' divides no body: it reaches the boundary of none"));
