@@ -68,35 +68,8 @@ class Fitter {
 
   /// The two neighbours of each point along a junction of the mesh; no entry for ends and branches.
   std::map<Index, std::array<Index, 2>> junction_neighbours() const {
-    struct Side {
-      Index u, v;
-      std::size_t sheet;
-      auto operator<=>(const Side&) const = default;
-    };
-    std::vector<Side> sides;
-    for (const InterfaceTriangle& t : mesh_.interfaces)
-      if (const auto sheet = surface_.sheet_of(t))
-        for (std::size_t k = 0; k < 3; ++k) {
-          const Index u = t.ids[k], v = t.ids[(k + 1) % 3];
-          const auto may_follow = [&](Index p) {
-            return labels_.of(p).kind == Kind::crease || labels_.of(p).kind == Kind::corner;
-          };
-          if (may_follow(u) && may_follow(v)) sides.push_back({std::min(u, v), std::max(u, v), *sheet});
-        }
-    std::sort(sides.begin(), sides.end());
-    sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
-    std::map<Index, std::vector<Index>> next;
-    for (auto first = sides.begin(); first != sides.end();) {
-      const auto end = std::find_if_not(first, sides.end(),
-                                        [&](const Side& s) { return s.u == first->u && s.v == first->v; });
-      if (end - first > 1) {
-        next[first->u].push_back(first->v);
-        next[first->v].push_back(first->u);
-      }
-      first = end;
-    }
     std::map<Index, std::array<Index, 2>> neighbours;
-    for (const auto& [p, others] : next)
+    for (const auto& [p, others] : labels_.junction_neighbours())
       if (others.size() == 2 && labels_.of(p).kind == Kind::crease) neighbours[p] = {others[0], others[1]};
     return neighbours;
   }

@@ -31,6 +31,7 @@ CreaseLabels::CreaseLabels(TetMesh& mesh, const FeatureSurface& surface, double 
   label_points();
   smooth_labels();
   take_corners();
+  order_corners();
   const std::vector<SheetEdge> chords = find_chords();
   std::vector<SheetEdge> edges = crossing_edges();
   edges.insert(edges.end(), chords.begin(), chords.end());

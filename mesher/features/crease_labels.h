@@ -6,6 +6,7 @@
 #include <compare>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <set>
 #include <vector>
 
@@ -81,6 +82,9 @@ class CreaseLabels {
   bool on_boundary(Index point) const { return number_[point] != no_index; }
   /// The boundary points, by number.
   const std::vector<Index>& points() const { return points_; }
+  /// The neighbours of points on creases and corners along the junctions of the mesh: edges of faces on
+  /// several sheets.
+  std::map<Index, std::vector<Index>> junction_neighbours() const;
 
  private:
   using Kind = FeatureLabel::Kind;
@@ -90,6 +94,10 @@ class CreaseLabels {
   void label_points();
   void smooth_labels();
   void take_corners();
+  void order_corners();
+  std::vector<Index> beyond_corner(const std::map<Index, std::vector<Index>>& neighbours, Index corner,
+                                   Index beside) const;
+  void divide_at_corner(const std::vector<Index>& run, bool corner_may_move);
   void take_kinks();
   void snap_points();
   void resolve_rest();
