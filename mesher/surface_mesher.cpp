@@ -329,8 +329,9 @@ class SurfaceMeshing {
     }
     fit_creases(dense.mesh, *features, *bodies_.field, cell);
     measure_walls(dense, *bodies_.field);
+    // Faces across a closed gap are no part of the region on either side of it.
     for (const InterfaceTriangle& t : dense.mesh.interfaces)
-      if (const SurfaceRegion group = features->group_of(t.patch))
+      if (const SurfaceRegion group = features->group_of(t.patch); group && features->sheet_of(t))
         dense.mesh.patch_groups[{t.pair(), t.patch}] = group;
     dense.reference = features;
     dense.report.seconds_cut += stages_.seconds();

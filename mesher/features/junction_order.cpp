@@ -20,7 +20,7 @@ std::map<Index, std::vector<Index>> CreaseLabels::junction_neighbours() const {
   std::vector<SheetEdge> sides;
   const auto may_follow = [&](Index p) { return of(p).kind == Kind::crease || of(p).kind == Kind::corner; };
   for (const InterfaceTriangle& t : mesh_.interfaces)
-    if (const auto sheet = surface_.sheet_of(t))
+    if (const auto sheet = sheet_of(t))
       for (std::size_t k = 0; k < 3; ++k) {
         const Index u = t.ids[k], v = t.ids[(k + 1) % 3];
         if (may_follow(u) && may_follow(v)) sides.push_back({std::min(u, v), std::max(u, v), *sheet});
