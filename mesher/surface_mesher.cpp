@@ -331,7 +331,8 @@ class SurfaceMeshing {
     measure_walls(dense, *bodies_.field);
     // Faces across a closed gap are no part of the region on either side of it.
     for (const InterfaceTriangle& t : dense.mesh.interfaces)
-      if (const SurfaceRegion group = features->group_of(t.patch); group && (t.is_sheet() || features->sheet_of(t)))
+      if (const SurfaceRegion group = features->group_of(t.patch);
+          group && (t.is_sheet() || features->sheet_of(t)))
         dense.mesh.patch_groups[{t.pair(), t.patch}] = group;
     dense.reference = features;
     dense.report.seconds_cut += stages_.seconds();
