@@ -152,8 +152,22 @@ void validate_limits(const MesherOptions& options, double cell) {
                      ", not " + std::to_string(*options.max_refinement));
 }
 
-/// The surfaces of all bodies, concatenated.
+/// The faces between the regions of a complex. A body's own surface would include its parts inside later
+/// bodies, where nothing of it is left.
+TriangleMesh faces_of_regions(const LabelledComplex& complex) {
+  TriangleMesh all;
+  all.points = complex.points;
+  all.triangles.reserve(complex.faces.size());
+  for (const LabelledComplex::Face& f : complex.faces) {
+    all.triangles.push_back(f.ids);
+    if (f.behind == outside_region) std::swap(all.triangles.back()[1], all.triangles.back()[2]);
+  }
+  return all;
+}
+
+/// The surfaces of all bodies; each contact once.
 TriangleMesh all_surfaces(const MesherInput& input) {
+  if (input.complex) return faces_of_regions(*input.complex);
   TriangleMesh all;
   for (const MesherInput::Body& body : input.bodies) {
     const auto first = static_cast<Index>(all.points.size());
@@ -316,8 +330,10 @@ class SurfaceMeshing {
     }
     fit_creases(dense.mesh, *features, *bodies_.field, cell);
     measure_walls(dense, *bodies_.field);
+    // Faces across a closed gap are no part of the region on either side of it.
     for (const InterfaceTriangle& t : dense.mesh.interfaces)
-      if (const SurfaceRegion group = features->group_of(t.patch))
+      if (const SurfaceRegion group = features->group_of(t.patch);
+          group && (t.is_sheet() || features->sheet_of(t)))
         dense.mesh.patch_groups[{t.pair(), t.patch}] = group;
     dense.reference = features;
     dense.report.seconds_cut += stages_.seconds();

@@ -34,7 +34,10 @@ class Fitter {
       : mesh_(mesh), surface_(surface), labels_(labels), field_(field), cell_(cell) {}
 
   void run() {
-    if (surface_.has_junctions()) unfold_junctions();
+    if (surface_.has_junctions()) {
+      unfold_junctions();
+      find_points_beside_gaps();
+    }
     std::vector<double> floors(std::begin(Fitting::pass_floors), std::end(Fitting::pass_floors));
     const double last = floors.back();
     if (surface_.has_junctions()) floors.insert(floors.end(), Fitting::junction_passes, last);
@@ -57,35 +60,8 @@ class Fitter {
 
   /// The two neighbours of each point along a junction of the mesh; no entry for ends and branches.
   std::map<Index, std::array<Index, 2>> junction_neighbours() const {
-    struct Side {
-      Index u, v;
-      std::size_t sheet;
-      auto operator<=>(const Side&) const = default;
-    };
-    std::vector<Side> sides;
-    for (const InterfaceTriangle& t : mesh_.interfaces)
-      if (const auto sheet = surface_.sheet_of(t))
-        for (std::size_t k = 0; k < 3; ++k) {
-          const Index u = t.ids[k], v = t.ids[(k + 1) % 3];
-          const auto may_follow = [&](Index p) {
-            return labels_.of(p).kind == Kind::crease || labels_.of(p).kind == Kind::corner;
-          };
-          if (may_follow(u) && may_follow(v)) sides.push_back({std::min(u, v), std::max(u, v), *sheet});
-        }
-    std::sort(sides.begin(), sides.end());
-    sides.erase(std::unique(sides.begin(), sides.end()), sides.end());
-    std::map<Index, std::vector<Index>> next;
-    for (auto first = sides.begin(); first != sides.end();) {
-      const auto end = std::find_if_not(first, sides.end(),
-                                        [&](const Side& s) { return s.u == first->u && s.v == first->v; });
-      if (end - first > 1) {
-        next[first->u].push_back(first->v);
-        next[first->v].push_back(first->u);
-      }
-      first = end;
-    }
     std::map<Index, std::array<Index, 2>> neighbours;
-    for (const auto& [p, others] : next)
+    for (const auto& [p, others] : labels_.junction_neighbours())
       if (others.size() == 2 && labels_.of(p).kind == Kind::crease) neighbours[p] = {others[0], others[1]};
     return neighbours;
   }
@@ -222,7 +198,18 @@ class Fitter {
       for (std::size_t i = 0; i < beside.size(); ++i) find_better_place(beside[i], stars[i]);
   }
 
+  /// Marks the points of faces that have a point at a closed gap.
+  void find_points_beside_gaps() {
+    const std::vector<std::uint8_t> at_gap = labels_.points_at_gaps();
+    beside_gap_.assign(mesh_.points.size(), 0);
+    for (const InterfaceTriangle& t : mesh_.interfaces)
+      if (std::any_of(t.ids.begin(), t.ids.end(), [&](Index p) { return at_gap[p] != 0; }))
+        for (const Index p : t.ids) beside_gap_[p] = 1;
+  }
+
   bool is_movable(Index p) const {
+    // Where a gap ends faces are close to each other across the outside, where no tet keeps them apart.
+    if (!beside_gap_.empty() && beside_gap_[p]) return false;
     const Kind kind = labels_.of(p).kind;
     return kind == Kind::patch || kind == Kind::crease || !labels_.on_boundary(p);
   }
@@ -283,14 +270,15 @@ class Fitter {
   const CreaseLabels& labels_;
   const MaterialField& field_;
   double cell_;
-  std::map<Index, Vec3> unfolded_;  ///< targets of unfold_junctions()
+  std::map<Index, Vec3> unfolded_;        ///< targets of unfold_junctions()
+  std::vector<std::uint8_t> beside_gap_;  ///< by point; empty without junctions
 };
 
 /// The patch of a face: the one common to its vertices. If several or none are common, the closest and best
 /// aligned patch.
 FeatureSurface::Patch patch_of(const TetMesh& mesh, const InterfaceTriangle& t, const CreaseLabels& labels,
                                const FeatureSurface& surface, double cell) {
-  const std::optional<std::size_t> sheet = surface.sheet_of(t);
+  const std::optional<std::size_t> sheet = labels.sheet_of(t);
   if (!sheet) return surface.no_patch();
   PatchSet candidates;
   bool first = true;

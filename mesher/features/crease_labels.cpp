@@ -29,9 +29,13 @@ CreaseLabels::CreaseLabels(TetMesh& mesh, const FeatureSurface& surface, double 
     : mesh_(mesh), surface_(surface), cell_(cell) {
   number_boundary();
   label_points();
+  if (surface_.has_junctions()) free_rims_of_gaps();
   smooth_labels();
   take_corners();
-  const std::vector<SheetEdge> chords = find_chords();
+  order_corners();
+  std::vector<SheetEdge> chords = find_chords();
+  const std::vector<SheetEdge> over_gaps = find_chords_over_gaps();
+  chords.insert(chords.end(), over_gaps.begin(), over_gaps.end());
   std::vector<SheetEdge> edges = crossing_edges();
   edges.insert(edges.end(), chords.begin(), chords.end());
   track(edges);
@@ -76,8 +80,12 @@ void CreaseLabels::label_points() {
         normal += (mesh_.points[face.ids[1]] - a).cross(mesh_.points[face.ids[2]] - a);
       }
       const std::optional<std::size_t> sheet = surface_.sheet_of(first);
-      if (!one_pair && surface_.has_junctions())
-        labels_[i] = junction_label(mesh_.points[points_[i]], sheets_at(static_cast<Index>(i)));
+      if (surface_.has_junctions() && (!one_pair || !sheet)) {
+        const std::set<std::size_t> sheets = sheets_at(static_cast<Index>(i));
+        const Vec3& p = mesh_.points[points_[i]];
+        labels_[i] =
+            sheets.size() == 1 ? patch_label(p, *sheets.begin(), nullptr) : junction_label(p, sheets);
+      }
       if (!one_pair || !sheet) continue;
       normal.normalize();
       // Between two materials either may be the body.
@@ -112,7 +120,7 @@ FeatureLabel CreaseLabels::label_at(Index number) {
   bool is_outer = false;
   for (const Index t : triangles_at_[number]) {
     const InterfaceTriangle& face = mesh_.interfaces[t];
-    if (surface_.sheet_of(face) != *sheets.begin()) continue;
+    if (sheet_of(face) != *sheets.begin()) continue;
     const Vec3& a = mesh_.points[face.ids[0]];
     normal += (mesh_.points[face.ids[1]] - a).cross(mesh_.points[face.ids[2]] - a);
     is_outer = !face.other;
@@ -130,6 +138,27 @@ FeatureLabel CreaseLabels::patch_label(const Vec3& p, std::size_t sheet, const V
   return {Kind::patch, {place->patch}, no_index, {}};
 }
 
+std::vector<std::uint8_t> CreaseLabels::points_at_gaps() const {
+  std::vector<std::uint8_t> at_gap(mesh_.points.size(), 0);
+  for (const InterfaceTriangle& t : mesh_.interfaces)
+    if (!surface_.sheet_of(t) && sheet_across_gap(t))
+      for (const Index p : t.ids) at_gap[p] = 1;
+  return at_gap;
+}
+
+/// Takes the labels from points beside a closed gap that are not on a surface: the later body fills the gap
+/// up to a rim, which is on neither side of it.
+void CreaseLabels::free_rims_of_gaps() {
+  const std::vector<std::uint8_t> at_gap = points_at_gaps();
+  for (Index i = 0; i < points_.size(); ++i) {
+    if (labels_[i].kind != Kind::patch || at_gap[points_[i]]) continue;
+    const std::size_t sheet = surface_.sheet_of(*labels_[i].patches.begin());
+    bool is_opposite = false;
+    for_neighbours(i, [&](Index p) { is_opposite |= at_gap[p] && !sheets_at(number_[p]).contains(sheet); });
+    if (is_opposite) labels_[i] = {};
+  }
+}
+
 void CreaseLabels::smooth_labels() {
   // A point whose neighbours all belong to other patches would be a patch of its own.
   std::vector<FeatureLabel> smoothed = labels_;
@@ -140,6 +169,8 @@ void CreaseLabels::smooth_labels() {
     for_neighbours(i, [&](Index p) {
       const FeatureLabel& other = labels_[number_[p]];
       if (other.kind != Kind::patch) return;
+      // Beside a closed gap are points of other sheets.
+      if (surface_.sheet_of(*other.patches.begin()) != surface_.sheet_of(*labels_[i].patches.begin())) return;
       ++counts[*other.patches.begin()];
       alone &= !other.patches.meets(labels_[i].patches);
     });
@@ -160,15 +191,27 @@ PatchSet CreaseLabels::on_sheet(Index number, std::size_t sheet) const {
   return own;
 }
 
-/// The sheets of the faces at a boundary point; empty if a face lies on none.
-std::set<std::size_t> CreaseLabels::sheets_at(Index number) const {
-  std::set<std::size_t> sheets;
-  for (const Index t : triangles_at_[number]) {
-    const auto sheet = surface_.sheet_of(mesh_.interfaces[t]);
-    if (!sheet) return {};
-    sheets.insert(*sheet);
+std::optional<std::size_t> CreaseLabels::sheet_across_gap(const InterfaceTriangle& face) const {
+  const auto& [a, b, c] = face.ids;
+  return surface_.sheet_across_gap(face, (mesh_.points[a] + mesh_.points[b] + mesh_.points[c]) / 3,
+                                   Labelling::surface_reach * cell_);
+}
+
+/// The sheets of faces of the mesh around a point or an edge. At a closed gap only that of the faces across
+/// it: its rim is free to move on the earlier body's surface.
+/// \param or_none empty if a face lies on no sheet
+std::set<std::size_t> CreaseLabels::sheets_of(const std::vector<Index>& faces, bool or_none) const {
+  std::set<std::size_t> sheets, across_gaps;
+  for (const Index t : faces) {
+    const InterfaceTriangle& face = mesh_.interfaces[t];
+    if (const auto sheet = surface_.sheet_of(face))
+      sheets.insert(*sheet);
+    else if (const auto across = sheet_across_gap(face))
+      across_gaps.insert(*across);
+    else if (or_none)
+      return {};
   }
-  return sheets;
+  return across_gaps.empty() ? sheets : across_gaps;
 }
 
 /// The label of a point where several sheets meet: the nearest curve of theirs, with a patch of each sheet.
@@ -205,7 +248,7 @@ bool CreaseLabels::crosses(const SheetEdge& edge) const {
 std::vector<CreaseLabels::SheetEdge> CreaseLabels::crossing_edges() const {
   std::vector<SheetEdge> edges;
   for (const InterfaceTriangle& t : mesh_.interfaces) {
-    const auto sheet = surface_.sheet_of(t);
+    const auto sheet = sheet_of(t);
     if (!sheet) continue;
     for (int k = 0; k < 3; ++k) {
       const Index u = t.ids[k], v = t.ids[(k + 1) % 3];

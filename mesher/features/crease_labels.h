@@ -6,6 +6,7 @@
 #include <compare>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <set>
 #include <vector>
 
@@ -81,8 +82,18 @@ class CreaseLabels {
   /// The patches of a boundary point on a sheet, also those that continue it beyond its border.
   PatchSet patches_on(Index point, std::size_t sheet) const { return on_sheet(number_[point], sheet); }
   bool on_boundary(Index point) const { return number_[point] != no_index; }
+  /// The sheet that a face of the mesh lies on: FeatureSurface::sheet_of(), or sheet_across_gap().
+  std::optional<std::size_t> sheet_of(const InterfaceTriangle& face) const {
+    if (const auto sheet = surface_.sheet_of(face)) return sheet;
+    return sheet_across_gap(face);
+  }
   /// The boundary points, by number.
   const std::vector<Index>& points() const { return points_; }
+  /// The neighbours of points on creases and corners along the junctions of the mesh: edges of faces on
+  /// several sheets.
+  std::map<Index, std::vector<Index>> junction_neighbours() const;
+  /// A flag for each point of the mesh: it is one of a face across a closed gap.
+  std::vector<std::uint8_t> points_at_gaps() const;
 
  private:
   using Kind = FeatureLabel::Kind;
@@ -90,8 +101,13 @@ class CreaseLabels {
 
   void number_boundary();
   void label_points();
+  void free_rims_of_gaps();
   void smooth_labels();
   void take_corners();
+  void order_corners();
+  std::vector<Index> beyond_corner(const std::map<Index, std::vector<Index>>& neighbours, Index corner,
+                                   Index beside) const;
+  void divide_at_corner(const std::vector<Index>& run, bool corner_may_move);
   void take_kinks();
   void snap_points();
   void resolve_rest();
@@ -105,7 +121,10 @@ class CreaseLabels {
     auto operator<=>(const SheetEdge&) const = default;
     bool same_ends(const SheetEdge& o) const { return u == o.u && v == o.v; }
   };
-  std::set<std::size_t> sheets_at(Index number) const;
+  std::optional<std::size_t> sheet_across_gap(const InterfaceTriangle& face) const;
+  std::set<std::size_t> sheets_of(const std::vector<Index>& faces, bool or_none) const;
+  /// The sheets of the faces at a boundary point; empty if a face lies on none.
+  std::set<std::size_t> sheets_at(Index number) const { return sheets_of(triangles_at_[number], true); }
   PatchSet leave_out_continuations(const Vec3& p, std::set<std::size_t>& sheets) const;
   FeatureLabel label_at(Index number);
   FeatureLabel junction_label(const Vec3& p, const std::set<std::size_t>& sheets) const;
@@ -115,6 +134,7 @@ class CreaseLabels {
   std::optional<Crossing> find_crossing(const SheetEdge& edge) const;
   bool may_snap(Index point, const PatchSet& patches) const;
   std::vector<SheetEdge> find_chords() const;
+  std::vector<SheetEdge> find_chords_over_gaps() const;
   void split_chords(const std::vector<SheetEdge>& chords);
   FeatureLabel patch_label(const Vec3& p, std::size_t sheet, const Vec3* normal) const;
   void split(Index u, Index v, double share, const FeatureLabel& label);

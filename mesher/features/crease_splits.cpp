@@ -32,8 +32,7 @@ std::vector<CreaseLabels::SheetEdge> CreaseLabels::find_chords() const {
     for (int k = 0; k < 3; ++k) {
       const Index u = t.ids[k], v = t.ids[(k + 1) % 3];
       if (!is_candidate(u, v)) continue;
-      if (const auto sheet = surface_.sheet_of(t))
-        in_sheets.push_back({std::min(u, v), std::max(u, v), *sheet});
+      if (const auto sheet = sheet_of(t)) in_sheets.push_back({std::min(u, v), std::max(u, v), *sheet});
     }
   std::sort(in_sheets.begin(), in_sheets.end());
   in_sheets.erase(std::unique(in_sheets.begin(), in_sheets.end()), in_sheets.end());
@@ -56,6 +55,34 @@ std::vector<CreaseLabels::SheetEdge> CreaseLabels::find_chords() const {
   std::sort(inner.begin(), inner.end());
   inner.erase(std::unique(inner.begin(), inner.end()), inner.end());
   chords.insert(chords.end(), inner.begin(), inner.end());
+  return chords;
+}
+
+/// The edges of the later body's surface between two points on the rim of a closed gap that are no edges of
+/// the rim. They would come to lie on the earlier body's surface with their ends.
+std::vector<CreaseLabels::SheetEdge> CreaseLabels::find_chords_over_gaps() const {
+  std::vector<SheetEdge> chords;
+  if (!surface_.has_junctions()) return chords;
+  const std::vector<std::uint8_t> at_gap = points_at_gaps();
+  std::vector<SheetEdge> edges;
+  for (const InterfaceTriangle& t : mesh_.interfaces)
+    if (const auto sheet = sheet_of(t))
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Index u = t.ids[k], v = t.ids[(k + 1) % 3];
+        if (at_gap[u] && at_gap[v]) edges.push_back({std::min(u, v), std::max(u, v), *sheet});
+      }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  for (auto first = edges.begin(); first != edges.end();) {
+    const auto end =
+        std::find_if_not(first, edges.end(), [&](const SheetEdge& e) { return e.same_ends(*first); });
+    const auto is_elsewhere = [&](Index p) {
+      return of(p).patches.size() > 0 && on_sheet(number_[p], first->sheet).size() == 0;
+    };
+    if (end - first == 1 && is_elsewhere(first->u) && is_elsewhere(first->v))
+      chords.push_back({first->u, first->v, no_sheet});
+    first = end;
+  }
   return chords;
 }
 
@@ -109,9 +136,7 @@ void CreaseLabels::split(Index u, Index v, double share, const FeatureLabel& giv
   number_.push_back(triangles.empty() ? no_index : number);
   if (!triangles.empty()) {
     points_.push_back(middle);
-    std::set<std::size_t> sheets;
-    for (const Index t : triangles)
-      if (const auto sheet = surface_.sheet_of(mesh_.interfaces[t])) sheets.insert(*sheet);
+    std::set<std::size_t> sheets = sheets_of(triangles, false);
     continued_.push_back(leave_out_continuations(mesh_.points[middle], sheets));
     labels_.push_back(sheets.size() > 1 ? junction_label(mesh_.points[middle], sheets) : given);
     triangles_at_.emplace_back();

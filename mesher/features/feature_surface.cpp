@@ -163,6 +163,9 @@ void FeatureSurface::add_complex(const ComplexPatches& complex, double corner_re
   groups_ = complex.groups;
   add_triangles(complex.points, complex.triangles, complex.patches, complex.rough, 0, corner_reach, items,
                 complex.touching);
+  std::vector<ProjectionTree::Item> touching;
+  for (const auto& [a, b] : complex.touching) touching.push_back({{a, b, b}, {}});
+  touching_edges_ = ProjectionTree(complex.points, std::move(touching));
 }
 
 std::optional<std::size_t> FeatureSurface::sheet_of(const InterfaceTriangle& face) const {
@@ -183,6 +186,33 @@ std::optional<std::size_t> FeatureSurface::sheet_of(const InterfaceTriangle& fac
   if (!first || !second) return first ? first : second;
   if (*first == *second) return {};
   return std::max(*first, *second);
+}
+
+std::optional<std::size_t> FeatureSurface::sheet_across_gap(const InterfaceTriangle& face, const Vec3& at,
+                                                            double reach) const {
+  if (!has_junctions() || !face.other || *face.other == face.material) return {};
+  const auto first = bodies_.find(face.material), second = bodies_.find(*face.other);
+  if (first == bodies_.end() || second == bodies_.end()) return {};
+  const std::size_t earlier = std::min(first->second, second->second),
+                    later = std::max(first->second, second->second);
+  const auto region = [](std::size_t body) { return static_cast<RegionIndex>(body + 1); };
+  if (sheet_between(region(earlier), region(later))) return {};
+  const auto own = sheet_between(outside_region, region(earlier)),
+             facing = sheet_between(outside_region, region(later));
+  if (!own || !facing || !nearest(at, *own, reach) || !nearest(at, *facing, reach)) return {};
+  const auto bounds = [&](std::size_t sheet, std::size_t body) {
+    const auto& bodies = bodies_of_sheet_[sheet];
+    return std::find(bodies.begin(), bodies.end(), body) != bodies.end();
+  };
+  const auto is_shared = [&](const PatchPair& pair) {
+    const std::size_t a = sheet_of_patch_[pair[0]], b = sheet_of_patch_[pair[1]];
+    return a < bodies_of_sheet_.size() && b < bodies_of_sheet_.size() &&
+           ((bounds(a, earlier) && bounds(b, later)) || (bounds(a, later) && bounds(b, earlier)));
+  };
+  // Zone::touching_thickness is larger than that of other gaps.
+  constexpr double to_edges = 2;
+  if (nearest_crease(at, reach, is_shared) || touching_edges_.any_within(at, to_edges * reach)) return {};
+  return own;
 }
 
 bool FeatureSurface::is_given_up(const Vec3& p, std::size_t sheet) const {

@@ -89,6 +89,15 @@ class FeatureSurface : public ReferenceSurface {
     const auto known = sheets_.find(std::minmax(a, b));
     return known == sheets_.end() ? std::nullopt : std::optional(known->second);
   }
+  /// The sheet that faces across a closed gap lie on: two bodies of the complex have no face in common, but
+  /// the outside between them was thinner than the cells. The later body takes it, so that these faces are on
+  /// the earlier body's sheet with the outside. std::nullopt for all other faces, near curves in which both
+  /// bodies end, where such faces are strips between regions that only face each other, and near edges in
+  /// which bodies touch, around which both of them grow.
+  /// \param at a point of the face
+  /// \param reach max distance from both sides of the gap
+  std::optional<std::size_t> sheet_across_gap(const InterfaceTriangle& face, const Vec3& at,
+                                              double reach) const;
   /// True if creases are given up anywhere.
   bool gives_up_creases() const { return given_up_.any(); }
   /// True where the creases of a sheet are given up.
@@ -158,6 +167,7 @@ class FeatureSurface : public ReferenceSurface {
   std::vector<std::size_t> sheet_of_patch_;
   std::vector<std::array<std::size_t, 2>> bodies_of_sheet_;  ///< of a complex; may be equal
   ProjectionTree triangles_, creases_, corner_points_;
+  ProjectionTree touching_edges_;
   std::vector<Vec3> normals_;  ///< of the items of triangles_
   std::vector<Corner> corners_;
   std::vector<SurfaceRegion> groups_;  ///< by patch

@@ -4,6 +4,7 @@
 #include <numbers>
 
 #include "tests/mesher/fields.h"
+#include "tests/mesher/test_surfaces.h"
 #include "tetwright/error.h"
 #include "tetwright/mesh_quality.h"
 #include "tetwright/mesher.h"
@@ -123,6 +124,20 @@ TEST(Materials, FourMeetInAPoint) {
   // more.
   expect_line(mesh, "interfaces touch at points: count 0");
   EXPECT_LT(percent_bad(mesh), 2);
+}
+
+// The simplifier fits the mesh to this surface.
+TEST(Materials, WhatLaterBodiesReplaceIsNoPartOfTheSurface) {
+  const MesherInput input =
+      make_mesher_input({{"large", 1, make_box({0, 0, 0}, {1, 1, 1}), "a.off"},
+                         {"small", 2, make_box({0.75, 0.25, 0.25}, {1.25, 0.75, 0.75}), "b.off"}});
+  const DenseMesh dense = mesh_of(input, 16);
+  double area = 0;
+  for (const auto& [a, b, c] : dense.surface->triangles) {
+    const std::vector<Vec3>& p = dense.surface->points;
+    area += (p[b] - p[a]).cross(p[c] - p[a]).norm() / 2;
+  }
+  EXPECT_NEAR(area, 6 + 6 * 0.25 - 0.25, 1e-9);
 }
 
 TEST(Materials, KeepOutsideFillsABox) {

@@ -11,6 +11,7 @@
 
 #include "tests/common/features/parts.h"
 #include "tests/mesher/test_surfaces.h"
+#include "tetwright/mesh_quality.h"
 #include "tetwright/mesher.h"
 #include "tetwright/mesher_input.h"
 
@@ -59,6 +60,22 @@ TEST(NarrowParts, ABallOnAPlateHasOneDiscOfContact) {
         << resolution;
     EXPECT_EQ(euler_number(mesh, [](const InterfaceTriangle& t) { return !t.other; }), 2) << resolution;
   }
+}
+
+double volume_of(const TetMesh& mesh, MaterialTag tag) {
+  std::vector<Tet> tets;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    if (mesh.materials[t] == tag) tets.push_back(mesh.tets[t]);
+  return volume(mesh.points, tets);
+}
+
+TEST(NarrowParts, AClosedGapLeavesTheEarlierBodyAsItIs) {
+  for (const double to_edge : {0.5, 0.12})
+    for (const int resolution : {16, 24, 32}) {
+      const TetMesh mesh = mesh_of(
+          {moved(unit_cube(), Vec3::Zero()), moved(make_sphere(0.45), Vec3(0.5, to_edge, 1.45))}, resolution);
+      EXPECT_NEAR(volume_of(mesh, 1), 1, 5e-4) << to_edge << " " << resolution;
+    }
 }
 
 TEST(NarrowParts, BodiesAroundALineTouchOnlyThoseBesideThem) {

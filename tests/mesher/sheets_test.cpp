@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <string>
 
 #include "tests/mesher/test_surfaces.h"
@@ -125,6 +126,22 @@ TEST(InnerSheets, MayReachFromWallToWall) {
   expect_sheets(dense.mesh, {{"wall", std::hypot(0.5, 1.5)}}, 2 * (std::hypot(0.5, 1.5) + 1));
   EXPECT_NEAR(volume_of(dense.mesh, 1), 3, 1e-6);
   EXPECT_EQ(solid_topology(dense.mesh.points, dense.mesh.tets).components, 1);
+}
+
+// The vertex nearest to a corner of the sheet is not always where its mesh's border turns from one face of
+// the box to the next.
+TEST(InnerSheets, CornersOfTurnedWallsAreExact) {
+  const auto turn = Eigen::AngleAxisd(71 * std::numbers::pi / 180, Vec3(0.36, -0.48, 0.8));
+  TriangleMesh box = make_box(low, high), wall = parallelogram({0.7, 0, 0}, {0.5, 1.5, 0}, {0, 0, 1});
+  for (TriangleMesh* surface : {&box, &wall})
+    for (Vec3& p : surface->points) p = turn * p;
+  const Vec3 normal = turn * Vec3(1.5, -0.5, 0).normalized();
+  const TetMesh mesh = mesh_of(in_box({sheet("wall", wall)}, 0, box), 30).mesh;
+  double off = 0;
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    for (const Index p : t.ids)
+      if (t.is_sheet()) off = std::max(off, std::abs(normal.dot(mesh.points[p] - wall.points[0])));
+  EXPECT_LT(off, 1e-9);
 }
 
 TEST(InnerSheets, ThatAreApartKeepTheirNames) {

@@ -193,7 +193,8 @@ struct DenseMesh {
   /// The reference for simplify(): the field. If surfaces have creases, or if labels are cut off by the
   /// border of the volume, a surface with these features and the field.
   std::shared_ptr<const ReferenceSurface> reference;
-  /// The repaired surfaces of all bodies as meshed; null for label volumes.
+  /// The repaired surfaces of all bodies as meshed, if some of them meet without what others replace, and
+  /// contacts once; null for label volumes.
   std::shared_ptr<const TriangleMesh> surface;
   /// Null if the surfaces have no holes. Patches of sharp flat caps are named already; the others are best
   /// named after simplifying, since their borders are no creases.
