@@ -86,7 +86,7 @@ class Fitter {
         if ((at - from).dot(to - from) > min_distance * (to - from).norm() &&
             (to - at).dot(to - from) > min_distance * (to - from).norm())
           continue;
-        const auto middle = place_of(p, (from + to) / 2);
+        const auto middle = on_curve_of(p, (from + to) / 2);
         if (!middle) continue;
         any = true;
         targets.at(p) = *middle;
@@ -94,6 +94,19 @@ class Fitter {
       }
       if (!any) return;
     }
+  }
+
+  /// The nearest point of all curves between the patches of a point of a junction: beside a corner the nearest
+  /// curve may have been another one.
+  std::optional<Vec3> on_curve_of(Index p, const Vec3& at) const {
+    const PatchSet& own = labels_.of(p).patches;
+    const auto place = surface_.nearest_crease(
+        at, Fitting::target_reach * cell_, [&](const FeatureSurface::PatchPair& pair) {
+          return own.contains(pair[0]) && own.contains(pair[1]) &&
+                 surface_.sheet_of(pair[0]) != surface_.sheet_of(pair[1]);
+        });
+    if (!place) return {};
+    return place->point;
   }
 
   /// Moves points towards their targets; false if all have arrived.

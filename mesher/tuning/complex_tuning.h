@@ -100,6 +100,9 @@ struct ComplexTuning {
     /// Squared distances that differ by less than this share are equal: rounding of the nearest points of two
     /// triangles with a common edge.
     static constexpr double tie = 1e-9;
+    /// Points closer to a sheet than this, voxels, are on it: rounding of coordinates of up to some thousand
+    /// voxels.
+    static constexpr double on_sheet = 1e-9;
     /// Voxels. A region between two others that is thinner gives way to one of them: one that is thicker has
     /// a lattice point wherever it lies (as DistanceTuning::Walls::min_shown_cells). Cells are smaller where
     /// materials are thin, down to an eighth (DomainTuning::Refinement::max_levels).
