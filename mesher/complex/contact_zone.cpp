@@ -221,10 +221,10 @@ ContactZone::Nearest ContactZone::nearest(const Vec3& point) const {
     return squared_distance * (1 + Zone::tie);
   });
   const Face& f = faces_[nearest];
-  // On a sheet rounding must not decide, or its points would be on either side by turns.
-  const bool front_is_first =
-      f.front != outside_region && (f.behind == outside_region || f.front < f.behind);
-  const bool in_front = std::abs(side) <= Zone::on_sheet ? front_is_first : side > 0;
+  // On a contact rounding must not decide, or its points would be on either side by turns.
+  const bool is_on_contact =
+      std::abs(side) <= Zone::on_sheet && f.front != outside_region && f.behind != outside_region;
+  const bool in_front = is_on_contact ? f.front < f.behind : side > 0;
   return {in_front ? f.front : f.behind, in_front ? f.behind : f.front,
           away_from(from_nearest, std::sqrt(squared_distance), in_front ? f.normal : Vec3(-f.normal))};
 }

@@ -96,8 +96,8 @@ class Fitter {
     }
   }
 
-  /// The nearest point of all curves between the patches of a point of a junction: beside a corner the nearest
-  /// curve may have been another one.
+  /// The nearest point of all curves between the patches of a point of a junction: beside a corner the
+  /// nearest curve may have been another one.
   std::optional<Vec3> on_curve_of(Index p, const Vec3& at) const {
     const PatchSet& own = labels_.of(p).patches;
     const auto place = surface_.nearest_crease(
