@@ -93,6 +93,8 @@ struct CutTuning {
     /// Max distance of a corner where sheets meet from the vertex that represents it, cells: where surfaces
     /// meet at a small angle, the mesh's junction is that far away.
     static constexpr double junction_reach = 3;
+    /// Points closer than this to the border of a sheet, cells, are on it.
+    static constexpr double border_reach = 0.05;
     /// Creases this close to each other, cells, are parts of one curve: rounding of nearest points.
     static constexpr double same_curve = 1e-6;
     /// Max distance of a crease from an edge that crosses it, in edge lengths: the tip of a wedge of 30
