@@ -63,7 +63,7 @@ void BranchingCurves::trace(std::span<const std::array<Index, 2>> edges,
   for (const auto& [p, all] : beside)
     if (ends[p] || all.size() != 2)
       for (const Index q : all) follow(p, q);
-  // What is left are closed curves.
+  // Closed curves are left.
   for (const auto& [a, b] : edges) follow(a, b);
 }
 

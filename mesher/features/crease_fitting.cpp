@@ -296,16 +296,15 @@ FeatureSurface::Patch patch_of(const TetMesh& mesh, const InterfaceTriangle& t, 
   PatchSet candidates;
   bool first = true;
   for (const Index p : t.ids) {
-    if (labels.of(p).kind == Kind::none) continue;
     const PatchSet own = labels.patches_on(p, *sheet);
+    if (labels.of(p).kind == Kind::none && own.size() == 0) continue;
     candidates = first ? own : candidates.common(own);
     first = false;
   }
   if (candidates.size() == 1) return *candidates.begin();
   if (candidates.size() == 0)
     for (const Index p : t.ids)
-      for (const FeatureSurface::Patch patch : labels.of(p).patches)
-        if (surface.sheet_of(patch) == *sheet) candidates.insert(patch);
+      for (const FeatureSurface::Patch patch : labels.patches_on(p, *sheet)) candidates.insert(patch);
   const Vec3 &a = mesh.points[t.ids[0]], &b = mesh.points[t.ids[1]], &c = mesh.points[t.ids[2]];
   const Vec3 centre = (a + b + c) / 3, normal = (b - a).cross(c - a).normalized();
   if (candidates.size() == 0) {

@@ -246,8 +246,6 @@ FeatureLabel CreaseLabels::junction_label(const Vec3& p, const std::set<std::siz
 }
 
 bool CreaseLabels::crosses(const SheetEdge& edge) const {
-  const FeatureLabel &a = labels_[number_[edge.u]], &b = labels_[number_[edge.v]];
-  if (a.kind == Kind::none || b.kind == Kind::none) return false;
   const PatchSet own = on_sheet(number_[edge.u], edge.sheet), other = on_sheet(number_[edge.v], edge.sheet);
   return own.size() > 0 && other.size() > 0 && !own.meets(other);
 }

@@ -32,7 +32,10 @@ class CurveTubes {
         cell_(cell),
         parts_(parts),
         progress_(progress),
-        curves_(complex, finder.branching_edges(), finder.curve_ends()) {
+        curves_(complex, finder.branching_edges(), finder.curve_ends()),
+        radii_(std::begin(Tubes::radii), std::end(Tubes::radii)) {
+    // Borders of sheets may be near.
+    if (parts) std::sort(radii_.begin(), radii_.end());
     locate_points();
     near_.emplace(mesh, surface, parts, is_near_);
     divide_curves();
@@ -86,7 +89,7 @@ class CurveTubes {
     };
     // A vertex at the rim of each ball around a branching point.
     const auto spacing = [&](Index curve, double along) {
-      const double size = size_at({curve, along, 0}), rim = Tubes::node_radius * Tubes::radii[0] * size;
+      const double size = size_at({curve, along, 0}), rim = Tubes::node_radius * radii_[0] * size;
       const std::array<bool, 2> branches = curves_.branches(curve);
       const bool is_in_ball =
           (branches[0] && along < rim) || (branches[1] && curves_.length(curve) - along < rim);
@@ -150,7 +153,7 @@ class CurveTubes {
 
   void fill_tubes() {
     const auto is_in_radius = [&](Index p) {
-      return is_near_[p] && locations_[p].distance < Tubes::radii[trial_[component_[nearest_[p]]]] * size_[p];
+      return is_near_[p] && locations_[p].distance < radii_[trial_[component_[nearest_[p]]]] * size_[p];
     };
     is_inside_.assign(near_->size(), 0);
     for (Index n = 0; n < near_->size(); ++n) {
@@ -340,13 +343,13 @@ class CurveTubes {
       }
     bool any = false;
     for (const Index v : vertices) {
-      if (trial_[component_[v]] + 1 < std::size(Tubes::radii)) continue;
+      if (trial_[component_[v]] + 1 < radii_.size()) continue;
       any |= !is_given_up_[v];
       is_given_up_[v] = 1;
       for (const Index w : vertex(v).next) is_given_up_[w] = 1;
     }
     for (const Index c : components)
-      if (trial_[c] + 1 < std::size(Tubes::radii)) {
+      if (trial_[c] + 1 < radii_.size()) {
         ++trial_[c];
         any = true;
       }
@@ -397,6 +400,7 @@ class CurveTubes {
   SheetParts* parts_;
   Progress* progress_;
   BranchingCurves curves_;
+  std::vector<double> radii_;  ///< in the order in which they are tried, as Tubes::radii
   std::vector<std::uint8_t> is_near_;                 ///< by point
   std::vector<BranchingCurves::Location> locations_;  ///< by point, if near
   std::vector<Index> nearest_;                        ///< by point, vertex of the chains

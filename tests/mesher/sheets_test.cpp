@@ -213,7 +213,7 @@ TEST(InnerSheets, CrossInACurveOfFourFaces) {
   const MesherInput input =
       in_box({sheet("first", parallelogram({0.4, 0.5, 0.3}, {1.2, 0.4, 0}, {0, 0, 0.4})),
               sheet("second", parallelogram({0.85, 0.25, 0.2}, {0.2, 0.95, 0}, {0, 0, 0.6}))});
-  for (const int resolution : {18, 26, 40}) {
+  for (const int resolution : {20, 26, 40}) {
     const TetMesh mesh = mesh_of(input, resolution).mesh;
     EXPECT_EQ(broken_promise(mesh.points, mesh.tets), "");
     EXPECT_TRUE(misplaced_sheet_faces(mesh).empty());
