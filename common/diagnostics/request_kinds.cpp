@@ -103,7 +103,7 @@ constexpr std::array request_table = std::to_array<DiagnosticKind>({
      .cause =
          "Where four and more surfaces meet in a curve, cells are too large to keep apart what only touches "
          "there.",
-     .remedy = "A higher `--resolution`, or a higher `--target-tets`."},
+     .remedy = "A higher `--resolution`."},
     {.code = creases_changed,
      .name = "creases-changed",
      .severity = Severity::shortfall,

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace tetwright {
 
@@ -100,10 +102,11 @@ Index BranchingCurves::vertex_at(Index point) {
 void BranchingCurves::divide(const std::function<double(Index curve, double along)>& spacing, double step) {
   vertices_.clear();
   std::fill(vertex_of_.begin(), vertex_of_.end(), no_index);
+  std::set<std::pair<Index, Index>> pairs;  // of ends
   for (Index c = 0; c < curves_.size(); ++c) {
     Curve& curve = curves_[c];
     const double length = curve.along.back();
-    const auto steps = static_cast<std::size_t>(std::ceil(length / step));
+    const auto steps = std::max<std::size_t>(1, static_cast<std::size_t>(std::ceil(length / step)));
     // The number of vertices up to each step.
     std::vector<double> count{0};
     for (std::size_t i = 0; i < steps; ++i) {
@@ -111,9 +114,13 @@ void BranchingCurves::divide(const std::function<double(Index curve, double alon
       count.push_back(count.back() + width / spacing(c, (static_cast<double>(i) + 0.5) * width));
     }
     const bool is_closed = curve.points.front() == curve.points.back();
-    // A closed chain of three is the shortest of which no two vertices have two edges in common.
-    const std::size_t edges =
-        std::max<std::size_t>(is_closed ? 3 : 1, static_cast<std::size_t>(std::floor(count.back())));
+    // No two vertices may have two edges in common: closed chains need three, and of chains with the same
+    // ends all but one two.
+    const bool has_twin = !pairs.insert(std::minmax(curve.points.front(), curve.points.back())).second;
+    const std::size_t edges = std::max<std::size_t>(is_closed  ? 3
+                                                    : has_twin ? 2
+                                                               : 1,
+                                                    static_cast<std::size_t>(std::floor(count.back())));
     curve.vertices = {vertex_at(curve.points.front())};
     curve.at = {0};
     const std::size_t middle_point = curve.points.size() / 2;
@@ -122,7 +129,7 @@ void BranchingCurves::divide(const std::function<double(Index curve, double alon
       const auto i =
           static_cast<std::size_t>(std::upper_bound(count.begin(), count.end() - 1, wanted) - count.begin()) -
           1;
-      const double share = (wanted - count[i]) / (count[i + 1] - count[i]);
+      const double width = count[i + 1] - count[i], share = width > 0 ? (wanted - count[i]) / width : 0;
       const double along = length * (static_cast<double>(i) + share) / static_cast<double>(steps);
       curve.vertices.push_back(static_cast<Index>(vertices_.size()));
       curve.at.push_back(along);

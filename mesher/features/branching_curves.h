@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -36,7 +37,7 @@ class BranchingCurves {
   BranchingCurves(const LabelledComplex& complex, std::span<const std::array<Index, 2>> edges,
                   const std::vector<std::uint8_t>& ends);
 
-  /// The nearest point of all curves, or nothing if it is farther away than `reach`.
+  /// The nearest point of all curves, or nothing if it is farther away than `reach`, input units.
   std::optional<Location> locate(const Vec3& p, double reach) const;
   /// Length of a curve, input units.
   double length(Index curve) const { return curves_[curve].along.back(); }
@@ -44,8 +45,9 @@ class BranchingCurves {
   /// Whether three or more curves meet at the start and at the end of a curve.
   std::array<bool, 2> branches(Index curve) const;
 
-  /// Makes the chains. \param spacing of their vertices at a distance along a curve, input units
-  /// \param step at which the spacing is read
+  /// Makes the chains.
+  /// \param spacing of their vertices at a distance along a curve, input units, above 0
+  /// \param step at which the spacing is read, input units, above 0
   void divide(const std::function<double(Index curve, double along)>& spacing, double step);
   /// Vertices of all chains; after divide().
   const std::vector<Vertex>& vertices() const { return vertices_; }
@@ -53,7 +55,7 @@ class BranchingCurves {
   std::array<Index, 2> ends(Index curve) const {
     return {curves_[curve].vertices.front(), curves_[curve].vertices.back()};
   }
-  /// The vertex nearest to a location along its curve.
+  /// The vertex nearest to a location along its curve. \pre divide() was called
   Index nearest_vertex(const Location& location) const;
 
  private:

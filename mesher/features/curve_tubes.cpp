@@ -207,7 +207,8 @@ class CurveTubes {
                        [&](RegionIndex r) { return r != outside_region && !own.contains(r); });
   }
 
-  /// Adds the tets outside poor faces, or outside all faces at their points. \return whether there are any
+  /// Adds the tets outside poor faces, or outside all faces at points where bands are not as they should be.
+  /// \return whether there are any
   bool grow(const std::vector<Index>& poor) {
     const std::vector<TubeSurface::Face>& faces = tubes_->faces();
     std::set<Index> outer;
@@ -244,20 +245,24 @@ class CurveTubes {
       if (const double shape = tubes_->shape(faces[f]);
           shape > TubeSurface::not_simplicial && shape != Tubes::shape_in_sheet && !is_good(faces[f]))
         waiting.insert(f);
-    while (!waiting.empty()) untangle_points(take_group(waiting));
+    while (!waiting.empty()) {
+      if (progress_) progress_->throw_if_stopped();
+      const std::set<Index> group = take_group(waiting);
+      if (group.size() <= Tubes::max_group) untangle_points(group);
+    }
   }
   /// Takes faces that are joined by common points out of a set. \return their points
   std::set<Index> take_group(std::set<Index>& waiting) const {
     std::set<Index> points;
-    for (bool any = true; any;) {
-      any = false;
-      for (auto f = waiting.begin(); f != waiting.end();) {
-        const Triangle& ids = tubes_->faces()[*f].ids;
-        const bool joins = points.empty() ||
-                           std::any_of(ids.begin(), ids.end(), [&](Index p) { return points.contains(p); });
-        if (joins) points.insert(ids.begin(), ids.end());
-        any |= joins;
-        f = joins ? waiting.erase(f) : std::next(f);
+    std::vector<Index> stack{*waiting.begin()};
+    waiting.erase(waiting.begin());
+    while (!stack.empty()) {
+      const Index f = stack.back();
+      stack.pop_back();
+      for (const Index p : tubes_->faces()[f].ids) {
+        if (!points.insert(p).second) continue;
+        for (const Index g : tubes_->faces_at().at(p))
+          if (waiting.erase(g)) stack.push_back(g);
       }
     }
     return points;
@@ -297,16 +302,19 @@ class CurveTubes {
     }
     if (!untangle(points, tets, freedom)) return;
     std::map<Index, Vec3> before;
+    bool is_valid = true;
     for (const Index p : moving) {
       const Index k = local.at(p);
       if (freedom[k].dimensions == 0) continue;
       before[p] = at(p);
       mesh_.points[p] = origin + cell_ * points[k];
-      if (freedom[k].dimensions == 2)
-        if (const auto place = surface_.nearest(at(p), *near_->sheet_at(p), cell_))
-          mesh_.points[p] = place->point;
+      if (freedom[k].dimensions < 3) {
+        const auto place = surface_.nearest(at(p), *near_->sheet_at(p), cell_);
+        is_valid &= place.has_value();
+        if (place) mesh_.points[p] = place->point;
+      }
     }
-    const bool is_valid = std::all_of(patch.begin(), patch.end(), [&](const Tet& t) {
+    is_valid &= std::all_of(patch.begin(), patch.end(), [&](const Tet& t) {
       const Vec3 &a = tubes_->position(t[0]), &b = tubes_->position(t[1]), &c = tubes_->position(t[2]),
                  &d = tubes_->position(t[3]);
       return orient3d(a, b, c, d) > 0 && min_solid_angle(a, b, c, d) > Tubes::min_solid_angle;
@@ -337,16 +345,20 @@ class CurveTubes {
     moved_from_.clear();
     std::set<Index> vertices, components;
     for (const Index f : poor)
-      for (const Index p : tubes_->faces()[f].ids) {
-        vertices.insert(tubes_->image(p));
-        components.insert(component_[tubes_->image(p)]);
-      }
+      for (const Index p : tubes_->faces()[f].ids)
+        for (const Index v : {tubes_->image(p), nearest_[p]}) {
+          vertices.insert(v);
+          components.insert(component_[v]);
+        }
     bool any = false;
-    for (const Index v : vertices) {
-      if (trial_[component_[v]] + 1 < radii_.size()) continue;
+    const auto give_up = [&](Index v) {
       any |= !is_given_up_[v];
       is_given_up_[v] = 1;
-      for (const Index w : vertex(v).next) is_given_up_[w] = 1;
+    };
+    for (const Index v : vertices) {
+      if (trial_[component_[v]] + 1 < radii_.size()) continue;
+      give_up(v);
+      for (const Index w : vertex(v).next) give_up(w);
     }
     for (const Index c : components)
       if (trial_[c] + 1 < radii_.size()) {
@@ -400,8 +412,8 @@ class CurveTubes {
   SheetParts* parts_;
   Progress* progress_;
   BranchingCurves curves_;
-  std::vector<double> radii_;  ///< in the order in which they are tried, as Tubes::radii
-  std::vector<std::uint8_t> is_near_;                 ///< by point
+  std::vector<double> radii_;          ///< in the order in which they are tried, as Tubes::radii
+  std::vector<std::uint8_t> is_near_;  ///< by point
   std::vector<BranchingCurves::Location> locations_;  ///< by point, if near
   std::vector<Index> nearest_;                        ///< by point, vertex of the chains
   std::vector<double> size_;                          ///< by point, the longest edges around the curve there

@@ -69,10 +69,13 @@ class JointMoves {
   /// The waiting points that a chain of tets with two of them joins to one.
   std::set<Index> group_of(Index p) const {
     std::set<Index> group{p};
-    for (std::size_t known = 0; known != group.size();) {
-      known = group.size();
-      for (const Index q : with_neighbours(group))
-        if (targets_.contains(q)) group.insert(q);
+    std::vector<Index> stack{p};
+    while (!stack.empty()) {
+      const Index q = stack.back();
+      stack.pop_back();
+      for (const Index t : at_.at(q))
+        for (const Index r : mesh_.tets[t])
+          if (targets_.contains(r) && group.insert(r).second) stack.push_back(r);
     }
     return group;
   }

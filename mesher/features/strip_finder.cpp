@@ -106,15 +106,19 @@ std::vector<Triangle> StripFinder::faces(const TetMesh& mesh) const {
   };
   std::vector<Triangle> found;
   for (const InterfaceTriangle& f : mesh.interfaces) {
+    // Faces between parts include those between materials.
+    if (parts_ && f.other) continue;
     const Vec3 middle = middle_of(f.ids);
     if (is_near_curve(middle) && are_across_curve(middle, {f.material}, {f.other})) found.push_back(f.ids);
   }
   if (!parts_) return found;
   for (const PartFace& f : part_faces(mesh, *parts_)) {
     const Vec3 middle = middle_of(f.ids);
-    const auto label = [&](Index t) { return Label{mesh.materials[t], parts_->of_tets[t]}; };
+    const auto label = [&](Index t) {
+      const MaterialTag tag = mesh.materials[t];
+      return Label{tag == outside_tag ? MaterialOrOutside{} : MaterialOrOutside{tag}, parts_->of_tets[t]};
+    };
     const Label a = label(f.first), b = label(f.second);
-    // Faces between materials that are strips were found above.
     if (is_near_curve(middle) && are_across_curve(middle, a, b)) found.push_back(f.ids);
   }
   return found;

@@ -3,7 +3,7 @@
 
 #include <array>
 #include <cstddef>
-#include <set>
+#include <cstdint>
 #include <vector>
 
 #include "common/geometry/projection_tree.h"

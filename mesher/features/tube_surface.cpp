@@ -93,7 +93,7 @@ void TubeSurface::map_points() {
         if (are_joined(image_[a], image_[b])) continue;
         for (const auto& [p, q] : {std::pair(a, b), std::pair(b, a)}) {
           const Index next = step(image_[p], image_[q]);
-          if (!may_go_to(p, next)) continue;
+          if (next == image_[p] || !may_go_to(p, next)) continue;
           const auto [known, is_new] = moved.try_emplace(p, next);
           if (!is_new) known->second = std::min(known->second, next);
         }
@@ -133,7 +133,8 @@ double TubeSurface::shape(const Face& f) const {
       worst = std::min(worst, is_in_sheet(t) ? Tubes::shape_in_sheet : min_solid_angle(a, b, c, d));
     } else {
       const double volume = std::abs((b - a).cross(c - a).dot(d - a));
-      worst = std::min(worst, std::max(not_simplicial / 2, -volume / (cell_ * cell_ * cell_)));
+      worst = std::min(worst, std::clamp(-volume / (cell_ * cell_ * cell_), not_simplicial / 2,
+                                         2 * Tubes::shape_in_sheet));
     }
   });
   return worst;

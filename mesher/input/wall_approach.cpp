@@ -148,7 +148,8 @@ bool WallApproach::is_hidden(const Vec3& point, const Vec3& direction) const {
 std::optional<PathTurn> WallApproach::turn_beside(const PathTurn& other, const Vec3& from,
                                                   const Vec3& direction, double along, double length,
                                                   double reach) const {
-  if (along >= length) return {};
+  // A path that leads away from the wall does not turn onto it.
+  if (along >= length || direction.dot(other.towards) <= -Turning::cosine) return {};
   const double farthest = Turning::farthest * reach, end = distance_along(from, direction);
   const Vec3 place = from + along * direction;
   if (along < end) {
