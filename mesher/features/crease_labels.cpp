@@ -99,18 +99,16 @@ void CreaseLabels::label_points() {
 PatchSet CreaseLabels::leave_out_continuations(const Vec3& p, std::set<std::size_t>& sheets) const {
   PatchSet continued;
   if (sheets.size() < 2 || !surface_.has_inner_sheets()) return continued;
+  const auto is_on_border = [&](std::size_t sheet) {
+    return surface_.nearest_crease(p, Labelling::border_reach * cell_, [&](const auto& pair) {
+      return surface_.sheet_of(pair[0]) == sheet && surface_.sheet_of(pair[1]) == sheet;
+    });
+  };
   std::erase_if(sheets, [&](std::size_t sheet) {
     if (!surface_.is_inner(sheet)) return false;
     const auto place = surface_.nearest(p, sheet, Labelling::surface_reach * cell_);
-    if (place && !surface_.is_continued(place->patch)) return false;
-    if (!place) return true;
-    // On its border it is the sheet itself.
-    if (surface_.nearest_crease(
-            p, Labelling::border_reach * cell_, [&](const FeatureSurface::PatchPair& pair) {
-              return surface_.sheet_of(pair[0]) == sheet && surface_.sheet_of(pair[1]) == sheet;
-            }))
-      return false;
-    continued.insert(place->patch);
+    if (place && (!surface_.is_continued(place->patch) || is_on_border(sheet))) return false;
+    if (place) continued.insert(place->patch);
     return true;
   });
   return continued;
