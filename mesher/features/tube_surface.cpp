@@ -139,6 +139,7 @@ double TubeSurface::shape(const Face& f) const {
   });
   return worst;
 }
+
 double TubeSurface::worst_shape_at(Index p) const {
   double worst = HUGE_VAL;
   for (const Index f : faces_at_.at(p)) worst = std::min(worst, shape(faces_[f]));
