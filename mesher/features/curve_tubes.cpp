@@ -110,29 +110,12 @@ class CurveTubes {
         locations_[p].distance = std::min(locations_[p].distance, distance);
       }
     }
-    number_components();
+    trial_.assign(curves_.vertices().size(), 0);
   }
   std::size_t bin(const BranchingCurves::Location& location, const std::vector<double>& bins) const {
     return std::min(bins.size() - 1, static_cast<std::size_t>(location.along / cell_));
   }
 
-  void number_components() {
-    component_.assign(curves_.vertices().size(), no_index);
-    trial_.clear();
-    for (Index v = 0; v < component_.size(); ++v) {
-      if (component_[v] != no_index) continue;
-      const auto number = static_cast<Index>(trial_.size());
-      trial_.push_back(0);
-      std::vector<Index> stack{v};
-      component_[v] = number;
-      while (!stack.empty()) {
-        const Index w = stack.back();
-        stack.pop_back();
-        for (const Index x : vertex(w).next)
-          if (component_[x] == no_index) component_[x] = number, stack.push_back(x);
-      }
-    }
-  }
   /// Whether a near tet may be part of a tube: all points near a curve, with a region of the curve, and at
   /// the boundary only where the curve is near it.
   bool may_be_inside(Index near) const {
@@ -153,7 +136,7 @@ class CurveTubes {
 
   void fill_tubes() {
     const auto is_in_radius = [&](Index p) {
-      return is_near_[p] && locations_[p].distance < radii_[trial_[component_[nearest_[p]]]] * size_[p];
+      return is_near_[p] && locations_[p].distance < radii_[trial_[nearest_[p]]] * size_[p];
     };
     is_inside_.assign(near_->size(), 0);
     for (Index n = 0; n < near_->size(); ++n) {
@@ -338,31 +321,30 @@ class CurveTubes {
     return own;
   }
 
-  /// Chooses the next radius for the curves of poor faces; after the last, the mesh stays as it is near
-  /// these. \return false if nothing changes
+  /// Chooses the next radius around poor faces; after the last, the mesh stays as it is near these.
+  /// \return false if nothing changes
   bool try_others(const std::vector<Index>& poor) {
     for (const auto& [p, position] : moved_from_) mesh_.points[p] = position;
     moved_from_.clear();
-    std::set<Index> vertices, components;
+    std::set<Index> vertices;
     for (const Index f : poor)
-      for (const Index p : tubes_->faces()[f].ids)
-        for (const Index v : {tubes_->image(p), nearest_[p]}) {
-          vertices.insert(v);
-          components.insert(component_[v]);
-        }
+      for (const Index p : tubes_->faces()[f].ids) vertices.insert({tubes_->image(p), nearest_[p]});
     bool any = false;
     const auto give_up = [&](Index v) {
       any |= !is_given_up_[v];
       is_given_up_[v] = 1;
     };
     for (const Index v : vertices) {
-      if (trial_[component_[v]] + 1 < radii_.size()) continue;
+      if (trial_[v] + 1 < radii_.size()) continue;
       give_up(v);
       for (const Index w : vertex(v).next) give_up(w);
     }
-    for (const Index c : components)
-      if (trial_[c] + 1 < radii_.size()) {
-        ++trial_[c];
+    for (int step = 0; step < Tubes::steps_of_change; ++step)
+      for (const Index v : std::vector<Index>(vertices.begin(), vertices.end()))
+        vertices.insert(vertex(v).next.begin(), vertex(v).next.end());
+    for (const Index v : vertices)
+      if (trial_[v] + 1 < radii_.size()) {
+        ++trial_[v];
         any = true;
       }
     return any;
@@ -423,8 +405,7 @@ class CurveTubes {
   std::map<Index, std::vector<Tet>> new_at_;  ///< tets of the tubes at outer points
   std::map<Index, Vec3> moved_from_;          ///< previous positions of points that made room
   std::vector<std::uint8_t> is_given_up_;     ///< by vertex of the chains
-  std::vector<Index> component_;              ///< by vertex of the chains: those that curves join
-  std::vector<std::size_t> trial_;            ///< by component, the radius that is tried
+  std::vector<std::size_t> trial_;            ///< by vertex of the chains, the radius that is tried
 };
 
 }  // namespace

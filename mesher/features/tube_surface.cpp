@@ -140,31 +140,40 @@ double TubeSurface::shape(const Face& f) const {
   return worst;
 }
 
-double TubeSurface::worst_shape_at(Index p) const {
+/// The worst shape of the faces at a point, or of some of them if that is no better than another.
+double TubeSurface::worst_shape_at(Index p, double other) const {
   double worst = HUGE_VAL;
-  for (const Index f : faces_at_.at(p)) worst = std::min(worst, shape(faces_[f]));
+  for (const Index f : faces_at_.at(p)) {
+    worst = std::min(worst, shape(faces_[f]));
+    if (worst <= other) break;
+  }
   return worst;
 }
 
 /// Maps points of faces with poor tets to a neighbour of their image where that is better.
 void TubeSurface::improve_map() {
+  std::vector<double> shapes(faces_.size());
+  for (Index f = 0; f < faces_.size(); ++f) shapes[f] = shape(faces_[f]);
   for (int pass = 0; pass < Tubes::max_passes; ++pass) {
     std::set<Index> points;
-    for (const Face& f : faces_)
-      if (shape(f) < Tubes::good_solid_angle) points.insert(f.ids.begin(), f.ids.end());
+    for (Index f = 0; f < faces_.size(); ++f)
+      if (shapes[f] < Tubes::good_solid_angle) points.insert(faces_[f].ids.begin(), faces_[f].ids.end());
     bool any = false;
     for (const Index p : points) {
-      double best = worst_shape_at(p);
+      double best = HUGE_VAL;
+      for (const Index f : faces_at_.at(p)) best = std::min(best, shapes[f]);
       Index& image = image_[p];
       const Index before = image;
       Index chosen = image;
       for (const Index v : vertex(before).next) {
         if (!may_go_to(p, v)) continue;
         image = v;
-        if (const double own = worst_shape_at(p); own > best) best = own, chosen = v;
+        if (const double own = worst_shape_at(p, best); own > best) best = own, chosen = v;
       }
       image = chosen;
-      any |= chosen != before;
+      if (chosen == before) continue;
+      any = true;
+      for (const Index f : faces_at_.at(p)) shapes[f] = shape(faces_[f]);
     }
     if (!any) return;
   }

@@ -67,7 +67,7 @@ class TubeSurface {
   void improve_map();
   bool may_go_to(Index p, Index v) const { return !border_.contains(p) || vertex(v).is_on_boundary(); }
   bool is_in_sheet(const Tet& t) const;
-  double worst_shape_at(Index p) const;
+  double worst_shape_at(Index p, double other) const;
 
   const TetMesh& mesh_;
   const NearTets& near_;

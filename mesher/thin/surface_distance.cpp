@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesher/thin/surface_distance.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
 #include "common/geometry/point_triangle.h"
 #include "common/geometry/ray_crossing.h"
+#include "common/mesh/disjoint_sets.h"
 #include "common/tolerances.h"
 #include "mesher/level_sets/hole_caps.h"
 #include "mesher/tuning/distance_tuning.h"
@@ -45,24 +47,63 @@ SurfaceDistance::SurfaceDistance(std::span<const Vec3> points, std::span<const T
     }
   });
   if (closed < surface) open_.emplace(points, triangles.subspan(closed));
+  if (closed == surface && caps.triangles.empty() && !intersects_itself) find_sides(triangles, order);
+}
+
+/// Finds the triangles behind which, and only there, is the inside: with closed surfaces that intersect
+/// nothing, those of components with the inside on the right side of one triangle, unless rounding determines
+/// the normal.
+void SurfaceDistance::find_sides(std::span<const Triangle> triangles, const std::vector<Index>& order) {
+  Index points = 0;
+  for (const Triangle& t : triangles) points = std::max({points, t[0] + 1, t[1] + 1, t[2] + 1});
+  DisjointSets components(points);
+  for (const Triangle& t : triangles) components.unite(t[0], t[1]), components.unite(t[0], t[2]);
+  const auto height = [&](std::size_t i) {
+    const auto& [a, b, c] = triangles_[i];
+    const double longest =
+        std::sqrt(std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()}));
+    return longest > 0 ? (b - a).cross(c - a).norm() / longest : 0;
+  };
+  std::vector<std::size_t> highest(points, order.size());  // by component
+  std::vector<double> heights(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    heights[i] = height(i);
+    std::size_t& best = highest[components.root(triangles[order[i]][0])];
+    if (best == order.size() || heights[i] > heights[best]) best = i;
+  }
+  std::vector<std::uint8_t> is_right(points, 0);
+  for (Index c = 0; c < points; ++c) {
+    if (highest[c] == order.size()) continue;
+    const auto& [a, b, d] = triangles_[highest[c]];
+    is_right[c] = has_inside_behind({(a + b + d) / 3, normals_[highest[c]]});
+  }
+  tells_side_.resize(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    tells_side_[i] = is_right[components.root(triangles[order[i]][0])] &&
+                     heights[i] > DistanceTuning::Triangles::min_height;
 }
 
 std::optional<SurfacePlace> SurfaceDistance::nearest(const Vec3& point, double at_most) const {
   std::size_t nearest = triangles_.size();
   Vec3 place = point;
   double squared_distance = at_most * at_most, alignment = 0;
+  bool is_in_front = false, is_behind = false, is_certain = false;  // of the closest triangles
   tree_.nearest(point, squared_distance, tree_.all(), [&](std::size_t t, double best) {
     if (normals_[t].isZero(0)) return best;
     const auto& [a, b, c] = triangles_[t];
     const Vec3 p = closest_point(point, a, b, c);
     const double squared = (p - point).squaredNorm();
     if (squared > squared_distance * (1 + DistanceTuning::Triangles::tie)) return best;
-    const double aligned = std::abs(normals_[t].dot(p - point));
-    if (nearest < triangles_.size() && squared >= squared_distance * (1 - DistanceTuning::Triangles::tie)) {
-      // Among equally close triangles choose the one that faces the point most directly, then the first, so
-      // that the result does not depend on the search order.
-      if (aligned < alignment || (aligned == alignment && t > nearest)) return best;
-    }
+    const double height = normals_[t].dot(point - p), aligned = std::abs(height);
+    const bool is_tie =
+        nearest < triangles_.size() && squared >= squared_distance * (1 - DistanceTuning::Triangles::tie);
+    if (!is_tie) is_in_front = is_behind = false, is_certain = !tells_side_.empty();
+    (height > 0 ? is_in_front : is_behind) = true;
+    is_certain =
+        is_certain && tells_side_[t] && height * height > DistanceTuning::Triangles::min_side_share * squared;
+    // Among equally close triangles choose the one that faces the point most directly, then the first, so
+    // that the result does not depend on the search order.
+    if (is_tie && (aligned < alignment || (aligned == alignment && t > nearest))) return best;
     nearest = t;
     place = p;
     squared_distance = std::min(squared_distance, squared);
@@ -70,7 +111,25 @@ std::optional<SurfacePlace> SurfaceDistance::nearest(const Vec3& point, double a
     return squared_distance * (1 + DistanceTuning::Triangles::tie);
   });
   if (nearest == triangles_.size()) return std::nullopt;
-  return SurfacePlace{place, normals_[nearest]};
+  // If the closest point is a corner, the directions of the surface from there form a polygon of great
+  // circles. With the point in front of all of its sides, the opposite direction is behind all, thus within
+  // the polygon, with the solid in it; and the other way round. With sides of both kinds nothing is known.
+  const double min_distance = DistanceTuning::Triangles::min_side_distance;
+  int side = 0;
+  if (is_certain && is_in_front != is_behind && squared_distance > min_distance * min_distance)
+    side = is_in_front ? 1 : -1;
+  return SurfacePlace{place, normals_[nearest], side};
+}
+
+bool SurfaceDistance::is_ball_empty(const Vec3& center, double radius) const {
+  const double limit = radius * radius;
+  return tree_.nearest(center, limit, tree_.all(), [&](std::size_t t, double best) {
+    if (normals_[t].isZero(0)) return best;
+    const auto& [a, b, c] = triangles_[t];
+    if (const double height = normals_[t].dot(center - a); height * height >= limit) return best;
+    // One is enough: nothing is nearer than a negative distance.
+    return (closest_point(center, a, b, c) - center).squaredNorm() < limit ? -1 : best;
+  }) >= limit;
 }
 
 bool SurfaceDistance::inside(const Vec3& point) const {
@@ -112,7 +171,10 @@ std::optional<SurfacePlace> SurfaceDistance::nearest_facing(const Vec3& point, c
 }
 
 bool SurfaceDistance::is_boundary(const SurfacePlace& place) const {
-  if (!intersects_itself_) return true;
+  return !intersects_itself_ || has_inside_behind(place);
+}
+
+bool SurfaceDistance::has_inside_behind(const SurfacePlace& place) const {
   return inside(place.point - DistanceTuning::Triangles::side_distance * place.normal) &&
          !inside(place.point + DistanceTuning::Triangles::side_distance * place.normal);
 }

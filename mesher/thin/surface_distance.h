@@ -16,6 +16,9 @@ namespace tetwright {
 struct SurfacePlace {
   Vec3 point = Vec3::Zero();
   Vec3 normal = Vec3::Zero();  ///< outward unit normal of the triangle
+  /// On which side of the surface the point is that it is closest to: 1 outside, -1 inside, 0 if the triangle
+  /// alone does not tell.
+  int side = 0;
 };
 
 /// Exact distances from the triangles of a surface, its exact inside, and the distance from one wall to the
@@ -36,6 +39,9 @@ class SurfaceDistance {
   /// most directly.
   std::optional<SurfacePlace> nearest(const Vec3& point, double at_most) const;
 
+  /// Whether no triangle is nearer to a point than `radius`.
+  bool is_ball_empty(const Vec3& center, double radius) const;
+
   /// True where the winding numbers of the closed components (exact) and of the open ones (by a tree) add up
   /// to more than 1/2.
   bool inside(const Vec3& point) const;
@@ -54,8 +60,11 @@ class SurfaceDistance {
                                              double below, bool in_front = false) const;
 
  private:
+  void find_sides(std::span<const Triangle> triangles, const std::vector<Index>& order);
   /// False for a point of a self-intersecting surface with the inside on both sides.
   bool is_boundary(const SurfacePlace& place) const;
+  /// Whether the inside is behind a point of the surface and not in front of it.
+  bool has_inside_behind(const SurfacePlace& place) const;
 
   BoxTree tree_;
   std::vector<std::array<Vec3, 3>> triangles_;  ///< in the order of the tree
@@ -63,6 +72,7 @@ class SurfaceDistance {
   std::vector<std::uint8_t> is_closed_;         ///< 1 for triangles of closed components
   std::optional<SurfaceTree> open_;
   bool intersects_itself_;
+  std::vector<std::uint8_t> tells_side_;  ///< 1 if the inside is behind a triangle and nowhere else near it
 };
 
 }  // namespace tetwright

@@ -49,6 +49,10 @@ double ThinWalls::parallel_thickness(const Vec3& point, int depth) const {
 double ThinWalls::thickness_around(SurfacePlace& place, SurfaceDistance::Side side, double at_most) const {
   const double sign = side == SurfaceDistance::Side::gap ? 1 : -1;
   SurfacePlace at = place;
+  // The ball of that thickness is empty but for rounding: there is no other wall, nor another face to go to.
+  if (surface_->is_ball_empty(at.point + sign * 0.5 * at_most * at.normal,
+                              0.5 * at_most * (1 - DistanceTuning::Triangles::min_shrink)))
+    return at_most;
   for (int step = 0;; ++step) {
     const double thickness = surface_->thickness(at, side, DistanceTuning::Walls::facing_to_change, at_most);
     if (thickness < at_most) {
@@ -78,8 +82,8 @@ double ThinWalls::distance(const Vec3& point, int depth, bool thicken, Vec3& gra
   const double min_shown = std::ldexp(DistanceTuning::Walls::min_shown_cells, -depth);
   const double close_below = std::max(min_shown, limits_.min_gap), omit_below = limits_.min_thickness;
   const double reach = std::max<double>(level_set_band, 0.5 * std::max(close_below, omit_below));
-  const bool inside = surface_->inside(point);
   const std::optional<SurfacePlace> place = surface_->nearest(point, reach);
+  const bool inside = place && place->side != 0 ? place->side < 0 : surface_->inside(point);
   if (!place) return inside ? -level_set_band : level_set_band;
   const Vec3 away = point - place->point;
   const double size = away.norm();

@@ -146,6 +146,8 @@ struct CutTuning {
     static constexpr double max_growth = 4;
     /// Rounds of growth, and passes over the points of a tube in each of them.
     static constexpr int max_rounds = 30, max_passes = 20;
+    /// Steps along a chain within which the radius changes where a tube fails.
+    static constexpr int steps_of_change = 2;
     /// Max number of points of poor faces that make room together: larger groups need another tube.
     static constexpr std::size_t max_group = 60;
     /// Steps along a chain within which points of an edge are brought together, and in which the boundary is

@@ -92,6 +92,10 @@ struct DistanceTuning {
     static constexpr double tie = 1e-9;
     /// Distance in front of and behind a surface point at which its sides are tested, voxels.
     static constexpr double side_distance = 1e-4;
+    /// A triangle tells on which side of the surface a point is if it is at least this high, the point this
+    /// far away (voxels), and the squared share of its height over the triangle's plane in the distance at
+    /// least the last: rounding of coordinates changes all three far less.
+    static constexpr double min_height = 1e-6, min_side_distance = 1e-3, min_side_share = 1e-6;
   };
 
   /// Thin walls and gaps of one surface. The guide, Thin walls, has the method; Measurements, Thin walls, has

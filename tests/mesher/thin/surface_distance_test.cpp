@@ -54,6 +54,71 @@ TEST(SurfaceDistance, NearestPlaceOfManyPoints) {
   }
 }
 
+/// A star with long spikes: at its corners faces of all directions meet.
+TriangleMesh make_star() {
+  TriangleMesh star = make_sphere(2, Vec3::Zero(), 2);
+  Random random(11);
+  for (Vec3& p : star.points) p *= 0.2 + 0.8 * random.uniform();
+  return star;
+}
+
+/// Asks for the side of random points and of some close to corners and edges. \return how many are told
+int told_sides(const TriangleMesh& mesh, const SurfaceDistance& distance) {
+  Random random(5);
+  const auto anywhere = [&](double size) {
+    return Vec3(size * (2 * random.uniform() - 1), size * (2 * random.uniform() - 1),
+                size * (2 * random.uniform() - 1));
+  };
+  int told = 0;
+  for (std::size_t i = 0; i < 3000; ++i) {
+    const Triangle& t = mesh.triangles[i % mesh.triangles.size()];
+    const Vec3 &a = mesh.points[t[0]], &b = mesh.points[t[1]];
+    const std::array<Vec3, 3> points{anywhere(3), a + anywhere(0.05), (a + b) / 2 + anywhere(0.05)};
+    const Vec3 p = points[i % 3];
+    const auto place = distance.nearest(p, 10);
+    if (!place || place->side == 0) continue;
+    ++told;
+    EXPECT_EQ(place->side < 0, distance.inside(p)) << p.transpose();
+  }
+  return told;
+}
+
+TEST(SurfaceDistance, ClosestTrianglesTellTheSide) {
+  const TriangleMesh hollow =
+      joined(make_box(Vec3(0, 0, 0), Vec3(3, 3, 3)), turned_over(make_box(Vec3(1, 1, 1), Vec3(2, 2, 2))));
+  for (const TriangleMesh& mesh : {make_star(), turned(hollow), hollow, turned(make_torus(2, 0.5))}) {
+    const int told = told_sides(mesh, distance_of(mesh));
+    EXPECT_GT(told, 2000);
+  }
+}
+
+TEST(SurfaceDistance, TrianglesOfOtherSurfacesTellNoSide) {
+  const TriangleMesh box = make_box(Vec3(0, 0, 0), Vec3(3, 3, 3)),
+                     inner = make_box(Vec3(1, 1, 1), Vec3(2, 2, 2));
+  // Both oriented outwards: the faces of the inner box have the inside on either side.
+  const TriangleMesh twice = joined(box, inner);
+  const SurfaceDistance nested = distance_of(twice);
+  told_sides(twice, nested);
+  EXPECT_EQ(nested.nearest(Vec3(1.5, 1.5, 1.9), 10)->side, 0);
+  EXPECT_EQ(nested.nearest(Vec3(1.5, 1.5, 2.9), 10)->side, -1);
+  const SurfaceDistance crossing{box.points, box.triangles, box.triangles.size(), {}, true};
+  EXPECT_EQ(told_sides(box, crossing), 0);
+  const SurfaceDistance open{box.points, box.triangles, 0, {}, false};
+  EXPECT_EQ(told_sides(box, open), 0);
+}
+
+TEST(SurfaceDistance, EmptyBallsTouchNothing) {
+  const TriangleMesh star = make_star();
+  const SurfaceDistance distance = distance_of(star);
+  Random random(3);
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 p(4 * random.uniform() - 2, 4 * random.uniform() - 2, 4 * random.uniform() - 2);
+    const double nearest = (distance.nearest(p, 10)->point - p).norm();
+    EXPECT_TRUE(distance.is_ball_empty(p, nearest * (1 - 1e-9)));
+    EXPECT_FALSE(distance.is_ball_empty(p, nearest * (1 + 1e-9) + 1e-12));
+  }
+}
+
 TEST(SurfaceDistance, ThicknessOfWallsAndGapsInAnyDirection) {
   for (const bool turn : {false, true}) {
     TriangleMesh two =
