@@ -156,21 +156,30 @@ class Fitter {
            walls->contains(field_.frame().to_grid(mesh_.points[p]));
   }
 
-  std::vector<PointMove> remaining_moves(double floor) const {
+  std::vector<PointMove> remaining_moves(double floor) {
     const std::vector<Index>& points = labels_.points();
-    return parallel_collect<PointMove>(0, points.size(), CutGrains::searches,
-                                       [&](std::size_t begin, std::size_t end, std::vector<PointMove>& out) {
-                                         for (std::size_t i = begin; i < end; ++i) {
-                                           if (must_stay(points[i], floor)) continue;
-                                           const Vec3& at = mesh_.points[points[i]];
-                                           const auto unfolded = unfolded_.find(points[i]);
-                                           const auto target = unfolded != unfolded_.end()
-                                                                   ? std::optional<Vec3>(unfolded->second)
-                                                                   : place_of(points[i], at);
-                                           if (target && (*target - at).norm() > Fitting::arrived * cell_)
-                                             out.push_back({points[i], at, *target - at});
-                                         }
-                                       });
+    targets_.resize(points.size());
+    const auto collect = [&](std::size_t begin, std::size_t end, std::vector<PointMove>& out) {
+      for (std::size_t i = begin; i < end; ++i) {
+        if (must_stay(points[i], floor)) continue;
+        const Vec3& at = mesh_.points[points[i]];
+        const std::optional<Vec3>& target = target_of(i);
+        if (target && (*target - at).norm() > Fitting::arrived * cell_)
+          out.push_back({points[i], at, *target - at});
+      }
+    };
+    return parallel_collect<PointMove>(0, points.size(), CutGrains::searches, collect);
+  }
+  /// The target of a point of the labels' list. Searched for again only if the point has moved.
+  const std::optional<Vec3>& target_of(std::size_t i) {
+    const Index p = labels_.points()[i];
+    Target& known = targets_[i];
+    if (known.is_known && known.at == mesh_.points[p]) return known.position;
+    known.is_known = true;
+    known.at = mesh_.points[p];
+    const auto unfolded = unfolded_.find(p);
+    known.position = unfolded == unfolded_.end() ? place_of(p, known.at) : unfolded->second;
+    return known.position;
   }
 
   double tangent_of(const Tet& t) const {
@@ -283,6 +292,12 @@ class Fitter {
   const CreaseLabels& labels_;
   const MaterialField& field_;
   double cell_;
+  struct Target {
+    bool is_known = false;
+    Vec3 at = Vec3::Zero();  ///< where the point was then
+    std::optional<Vec3> position;
+  };
+  std::vector<Target> targets_;           ///< by index in the list of labelled points
   std::map<Index, Vec3> unfolded_;        ///< targets of unfold_junctions()
   std::vector<std::uint8_t> beside_gap_;  ///< by point; empty without junctions
 };
