@@ -6,6 +6,7 @@
 #include <cmath>
 #include <deque>
 
+#include "common/portable_math.h"
 #include "mesher/tuning/cut_tuning.h"
 
 namespace tetwright {
@@ -31,7 +32,7 @@ class Distortion {
     // The edges of a regular tet of the mean volume.
     Matrix3d regular;
     regular << 1, 0.5, 0.5, 0, std::sqrt(3) / 2, std::sqrt(3) / 6, 0, 0, std::sqrt(2.0 / 3);
-    size_ = std::cbrt(6 * volume / regular.determinant());
+    size_ = portable_cbrt(6 * volume / regular.determinant());
     from_regular_ = (size_ * regular).inverse();
   }
 
@@ -71,7 +72,7 @@ class Distortion {
     for (const Tet& t : tets_) {
       const Matrix3d j = edges(t) * from_regular_;
       const double determinant = j.determinant(), chi = regularised(determinant, epsilon);
-      const double root = std::cbrt(chi), shape = j.squaredNorm() / (root * root);
+      const double root = portable_cbrt(chi), shape = j.squaredNorm() / (root * root);
       const double size = (1 + determinant * determinant) / chi;
       sum += shape + size;
       if (!gradient) continue;
