@@ -173,8 +173,9 @@ class CurveTubes {
       const RegionIndex region = surface_.region_of(near_->label(faces[f].inner).material);
       for (const Index p : faces[f].ids) reached[tubes_->image(p)].insert(region);
     }
-    for (const auto& [p, around] : tubes_->faces_at())
-      if (!is_clean(p) || lacks_region(tubes_->image(p), reached)) poor.insert(around.begin(), around.end());
+    for (const Index p : tubes_->points())
+      if (!is_clean(p) || lacks_region(tubes_->image(p), reached))
+        poor.insert(tubes_->faces_at(p).begin(), tubes_->faces_at(p).end());
     return {poor.begin(), poor.end()};
   }
   bool is_good(const TubeSurface::Face& f) const { return tubes_->shape(f) > Tubes::min_solid_angle; }
@@ -202,7 +203,7 @@ class CurveTubes {
       }
       for (const Index p : faces[f].ids)
         if (!is_clean(p))
-          for (const Index g : tubes_->faces_at().at(p)) outer.insert(faces[g].outer);
+          for (const Index g : tubes_->faces_at(p)) outer.insert(faces[g].outer);
     }
     bool any = false;
     for (const Index n : outer) {
@@ -244,7 +245,7 @@ class CurveTubes {
       stack.pop_back();
       for (const Index p : tubes_->faces()[f].ids) {
         if (!points.insert(p).second) continue;
-        for (const Index g : tubes_->faces_at().at(p))
+        for (const Index g : tubes_->faces_at(p))
           if (waiting.erase(g)) stack.push_back(g);
       }
     }

@@ -2,6 +2,7 @@
 #include "mesher/features/near_tets.h"
 
 #include <algorithm>
+#include <set>
 #include <tuple>
 
 namespace tetwright {
@@ -12,14 +13,30 @@ NearTets::NearTets(const TetMesh& mesh, const FeatureSurface& surface, const She
   for (Index t = 0; t < mesh.tets.size(); ++t)
     if (std::any_of(mesh.tets[t].begin(), mesh.tets[t].end(), [&](Index p) { return is_near[p] != 0; }))
       tets_.push_back(t);
+  number_points();
   find_neighbours(is_near);
   for (Index n = 0; n < tets_.size(); ++n)
     for (const Index p : points_of(n)) {
-      at_[p].push_back(n);
-      labels_at_[p].insert(label(n));
+      at_[number_[p]].push_back(n);
+      labels_at_[number_[p]].push_back(label(n));
     }
-  for (const Index p : on_boundary_)
-    if (const auto known = labels_at_.find(p); known != labels_at_.end()) known->second.insert(Label{});
+  for (Index i = 0; i < labels_at_.size(); ++i) {
+    std::vector<Label>& own = labels_at_[i];
+    if (is_on_boundary_[i]) own.push_back(Label{});
+    std::sort(own.begin(), own.end());
+    own.erase(std::unique(own.begin(), own.end()), own.end());
+  }
+}
+
+void NearTets::number_points() {
+  number_.assign(mesh_.points.size(), no_index);
+  Index count = 0;
+  for (Index n = 0; n < tets_.size(); ++n)
+    for (const Index p : points_of(n))
+      if (number_[p] == no_index) number_[p] = count++;
+  at_.resize(count);
+  labels_at_.resize(count);
+  is_on_boundary_.assign(count, 0);
 }
 
 void NearTets::find_neighbours(const std::vector<std::uint8_t>& is_near) {
@@ -43,7 +60,8 @@ void NearTets::find_neighbours(const std::vector<std::uint8_t>& is_near) {
     Triangle key = f.ids;
     std::sort(key.begin(), key.end());
     boundary.insert(key);
-    on_boundary_.insert(f.ids.begin(), f.ids.end());
+    for (const Index p : f.ids)
+      if (has(p)) is_on_boundary_[number_[p]] = 1;
   }
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const Side& side = sides[i];
@@ -65,8 +83,6 @@ NearTets::Label NearTets::label(Index near) const {
   return own;
 }
 
-const std::set<NearTets::Label>& NearTets::labels_at(Index p) const { return labels_at_.at(p); }
-
 std::uint32_t NearTets::component_between(const Label& a, const Label& b) const {
   return parts_ && a.part != b.part ? parts_->field->component_between(a.part, b.part) : no_index;
 }
@@ -75,7 +91,7 @@ bool NearTets::are_divided(const Label& a, const Label& b) const {
   return a.material != b.material || component_between(a, b) != no_index;
 }
 
-bool NearTets::are_any_divided(const std::set<Label>& labels) const {
+bool NearTets::are_any_divided(const std::vector<Label>& labels) const {
   for (auto a = labels.begin(); a != labels.end(); ++a)
     for (auto b = std::next(a); b != labels.end(); ++b)
       if (are_divided(*a, *b)) return true;
@@ -84,7 +100,7 @@ bool NearTets::are_any_divided(const std::set<Label>& labels) const {
 
 std::optional<std::size_t> NearTets::sheet_at(Index p) const {
   std::optional<std::size_t> only;
-  const std::set<Label>& labels = labels_at(p);
+  const std::vector<Label>& labels = labels_at(p);
   for (auto a = labels.begin(); a != labels.end(); ++a)
     for (auto b = std::next(a); b != labels.end(); ++b) {
       if (!are_divided(*a, *b)) continue;

@@ -2,9 +2,8 @@
 #pragma once
 
 #include <array>
-#include <map>
+#include <cstdint>
 #include <optional>
-#include <set>
 #include <vector>
 
 #include "mesher/cut/sheet_faces.h"
@@ -38,24 +37,26 @@ class NearTets {
   /// The near tet beyond a face, or far or none.
   Index neighbour(Index near, Index k) const { return neighbours_[near][k]; }
   /// The near tets at a point of one of them, ascending.
-  const std::vector<Index>& at(Index p) const { return at_.at(p); }
-  bool has(Index p) const { return at_.contains(p); }
-  bool is_on_boundary(Index p) const { return on_boundary_.contains(p); }
+  const std::vector<Index>& at(Index p) const { return at_[number_[p]]; }
+  bool has(Index p) const { return number_[p] != no_index; }
+  /// \pre has(p)
+  bool is_on_boundary(Index p) const { return is_on_boundary_[number_[p]] != 0; }
 
   Label label(Index near) const;
-  /// The labels of the near tets at a point, and an empty one for outside. \pre has(p)
-  const std::set<Label>& labels_at(Index p) const;
+  /// The labels of the near tets at a point, ascending, and an empty one for outside. \pre has(p)
+  const std::vector<Label>& labels_at(Index p) const { return labels_at_[number_[p]]; }
   /// The component of the sheet between two parts of a material, or no_index.
   std::uint32_t component_between(const Label& a, const Label& b) const;
   /// Whether there is a sheet between two labels: parts may also end at the rim of a sheet's zone.
   bool are_divided(const Label& a, const Label& b) const;
   /// Whether any two of some labels are divided.
-  bool are_any_divided(const std::set<Label>& labels) const;
+  bool are_any_divided(const std::vector<Label>& labels) const;
   /// The only sheet at a point; nothing if there is none, or several.
   std::optional<std::size_t> sheet_at(Index p) const;
 
  private:
   void find_neighbours(const std::vector<std::uint8_t>& is_near);
+  void number_points();
   std::optional<std::size_t> sheet_between(const Label& a, const Label& b) const;
 
   const TetMesh& mesh_;
@@ -63,9 +64,10 @@ class NearTets {
   const SheetParts* parts_;
   std::vector<Index> tets_;
   std::vector<std::array<Index, 4>> neighbours_;
-  std::map<Index, std::vector<Index>> at_;
-  std::map<Index, std::set<Label>> labels_at_;
-  std::set<Index> on_boundary_;
+  std::vector<Index> number_;  ///< by point of the mesh, in the following lists
+  std::vector<std::vector<Index>> at_;
+  std::vector<std::vector<Label>> labels_at_;
+  std::vector<std::uint8_t> is_on_boundary_;
 };
 
 }  // namespace tetwright

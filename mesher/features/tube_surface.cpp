@@ -2,6 +2,8 @@
 #include "mesher/features/tube_surface.h"
 
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "common/geometry/predicates.h"
 #include "mesher/tuning/cut_tuning.h"
@@ -14,6 +16,9 @@ using Tubes = CutTuning::Tubes;
 TubeSurface::TubeSurface(const TetMesh& mesh, const NearTets& near, const BranchingCurves& curves,
                          const StripFinder& finder, const std::vector<Index>& nearest, double cell)
     : mesh_(mesh), near_(near), curves_(curves), finder_(finder), nearest_(nearest), cell_(cell) {
+  faces_at_.resize(mesh.points.size());
+  is_on_border_.assign(mesh.points.size(), 0);
+  image_.assign(mesh.points.size(), no_index);
   find_ways_to_boundary();
 }
 
@@ -36,8 +41,10 @@ void TubeSurface::find_ways_to_boundary() {
 
 void TubeSurface::find(const std::vector<std::uint8_t>& is_inside) {
   faces_.clear();
-  faces_at_.clear();
-  border_.clear();
+  for (const Index p : points_) {
+    faces_at_[p].clear();
+    is_on_border_[p] = 0;
+  }
   for (Index n = 0; n < near_.size(); ++n) {
     if (!is_inside[n]) continue;
     for (Index k = 0; k < 4; ++k) {
@@ -47,11 +54,22 @@ void TubeSurface::find(const std::vector<std::uint8_t>& is_inside) {
       faces_.push_back({near_.face_of(n, k), n, other});
     }
   }
-  std::map<std::array<Index, 2>, int> uses;
+  points_.clear();
+  std::vector<std::array<Index, 2>> edges;
   for (const Face& f : faces_)
-    for (std::size_t k = 0; k < 3; ++k) ++uses[ascending_edge(f.ids[k], f.ids[(k + 1) % 3])];
-  for (const auto& [e, count] : uses)
-    if (count == 1) border_.insert(e.begin(), e.end());
+    for (std::size_t k = 0; k < 3; ++k) {
+      points_.push_back(f.ids[k]);
+      edges.push_back(ascending_edge(f.ids[k], f.ids[(k + 1) % 3]));
+    }
+  std::sort(points_.begin(), points_.end());
+  points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
+  std::sort(edges.begin(), edges.end());
+  for (std::size_t i = 0; i < edges.size();) {
+    const std::size_t first = i;
+    while (i < edges.size() && edges[i] == edges[first]) ++i;
+    if (i - first == 1)
+      for (const Index p : edges[first]) is_on_border_[p] = 1;
+  }
   map_points();
   improve_map();
 }
@@ -78,10 +96,9 @@ Index TubeSurface::step(Index from, Index to) const {
 /// Maps each outer point to the nearest vertex of the chains, those on the border of the tube to one on the
 /// boundary, and then points of one edge closer to each other until they go to a vertex or an edge.
 void TubeSurface::map_points() {
-  image_.clear();
-  for (const auto& [p, faces] : faces_at_) {
+  for (const Index p : points_) {
     Index v = nearest_[p];
-    while (border_.contains(p) && to_boundary_[v] != no_index && !vertex(v).is_on_boundary())
+    while (is_on_border_[p] && to_boundary_[v] != no_index && !vertex(v).is_on_boundary())
       v = to_boundary_[v];
     image_[p] = v;
   }
@@ -105,20 +122,27 @@ void TubeSurface::map_points() {
 
 /// Whether all points of a tet are on one sheet, so that it will be flat once they are fitted to it.
 bool TubeSurface::is_in_sheet(const Tet& t) const {
-  std::set<NearTets::Label> common;
-  bool any = false, on_boundary = true;
+  // All labels meet in the curve.
+  bool is_any_inside = false;
+  std::vector<NearTets::Label> common;
+  const std::vector<NearTets::Label>* first = nullptr;
   for (const Index p : t) {
-    if (p >= mesh_.points.size()) {
-      // All labels meet in the curve.
-      on_boundary &= vertex(p - first_vertex()).is_on_boundary();
+    if (p >= first_vertex()) {
+      is_any_inside |= !vertex(p - first_vertex()).is_on_boundary();
       continue;
     }
-    const std::set<NearTets::Label>& own = near_.labels_at(p);
-    if (!any) common = own;
-    std::erase_if(common, [&](const NearTets::Label& l) { return !own.contains(l); });
-    any = true;
+    const std::vector<NearTets::Label>& own = near_.labels_at(p);
+    if (own.size() < 2) return false;
+    if (!first) {
+      first = &own;
+      common = own;
+    } else {
+      std::erase_if(common,
+                    [&](const NearTets::Label& l) { return !std::binary_search(own.begin(), own.end(), l); });
+    }
+    if (common.size() < 2) return false;
   }
-  if (!on_boundary) common.erase(NearTets::Label{});
+  if (is_any_inside) std::erase(common, NearTets::Label{});
   return near_.are_any_divided(common);
 }
 
@@ -143,7 +167,7 @@ double TubeSurface::shape(const Face& f) const {
 /// The worst shape of the faces at a point, or of some of them if that is no better than another.
 double TubeSurface::worst_shape_at(Index p, double other) const {
   double worst = HUGE_VAL;
-  for (const Index f : faces_at_.at(p)) {
+  for (const Index f : faces_at_[p]) {
     worst = std::min(worst, shape(faces_[f]));
     if (worst <= other) break;
   }
@@ -161,7 +185,7 @@ void TubeSurface::improve_map() {
     bool any = false;
     for (const Index p : points) {
       double best = HUGE_VAL;
-      for (const Index f : faces_at_.at(p)) best = std::min(best, shapes[f]);
+      for (const Index f : faces_at_[p]) best = std::min(best, shapes[f]);
       Index& image = image_[p];
       const Index before = image;
       Index chosen = image;
@@ -173,14 +197,14 @@ void TubeSurface::improve_map() {
       image = chosen;
       if (chosen == before) continue;
       any = true;
-      for (const Index f : faces_at_.at(p)) shapes[f] = shape(faces_[f]);
+      for (const Index f : faces_at_[p]) shapes[f] = shape(faces_[f]);
     }
     if (!any) return;
   }
 }
 
 bool TubeSurface::has_clean_bands(Index p) const {
-  const std::vector<Index>& faces = faces_at_.at(p);
+  const std::vector<Index>& faces = faces_at_[p];
   std::map<Index, std::vector<Index>> beside;  // faces by the other point of an edge
   for (const Index f : faces)
     for (const Index q : faces_[f].ids)

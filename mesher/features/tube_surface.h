@@ -3,8 +3,7 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
-#include <set>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -38,8 +37,11 @@ class TubeSurface {
   void find(const std::vector<std::uint8_t>& is_inside);
 
   const std::vector<Face>& faces() const { return faces_; }
-  const std::map<Index, std::vector<Index>>& faces_at() const { return faces_at_; }
-  Index image(Index p) const { return image_.at(p); }
+  /// Points of the faces, ascending.
+  const std::vector<Index>& points() const { return points_; }
+  const std::vector<Index>& faces_at(Index p) const { return faces_at_[p]; }
+  /// The vertex to which a point of the faces goes.
+  Index image(Index p) const { return image_[p]; }
   /// Points of the mesh, followed by the vertices of the chains.
   const Vec3& position(Index p) const {
     return p < mesh_.points.size() ? mesh_.points[p] : vertex(p - first_vertex()).position;
@@ -65,7 +67,7 @@ class TubeSurface {
   Index step(Index from, Index to) const;
   void map_points();
   void improve_map();
-  bool may_go_to(Index p, Index v) const { return !border_.contains(p) || vertex(v).is_on_boundary(); }
+  bool may_go_to(Index p, Index v) const { return !is_on_border_[p] || vertex(v).is_on_boundary(); }
   bool is_in_sheet(const Tet& t) const;
   double worst_shape_at(Index p, double other) const;
 
@@ -78,9 +80,10 @@ class TubeSurface {
   std::vector<Index> to_boundary_;  ///< by vertex, the next one on the way there, or no_index
   std::vector<int> steps_to_boundary_;
   std::vector<Face> faces_;
-  std::map<Index, std::vector<Index>> faces_at_;  ///< by point
-  std::set<Index> border_;  ///< points on the border of the faces, where the boundary begins
-  std::map<Index, Index> image_;
+  std::vector<Index> points_;                 ///< of the faces, ascending
+  std::vector<std::vector<Index>> faces_at_;  ///< by point
+  std::vector<std::uint8_t> is_on_border_;    ///< by point: on that of the faces, where the boundary begins
+  std::vector<Index> image_;                  ///< by point, if it is one of the faces
 };
 
 template <class Add>
