@@ -93,7 +93,7 @@ struct ComplexTuning {
 
   /// Where regions are decided by the triangles.
   struct Zone {
-    static constexpr std::size_t leaf_size = 4;
+    static constexpr std::size_t leaf_size = 1;
     /// Distance from contacts and junctions, voxels: the band of the level sets, within which distances are
     /// interpolated.
     static constexpr double reach = 3;
