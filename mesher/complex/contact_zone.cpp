@@ -54,6 +54,28 @@ ContactZone::Distance away_from(const Vec3& away, double length, const Vec3& nor
   return {tolerance::smallest_distance, normal};
 }
 
+/// The thickness below which the outside gives way at a distance from a line in which bodies touch.
+double touching_thickness(double distance) {
+  return Zone::touching_thickness * (1 - distance * distance / (Zone::reach * Zone::reach));
+}
+
+/// Makes the outside give way between two bodies that touch in a line, if it does not do so by more already.
+/// It is as thick as the chord of the wedge between them is long, at the point's distance from the line: so its
+/// rim is a circle around the line, which meets both bodies at right angles. Where they meet at smaller ones, an
+/// edge of the lattice can pass through the thin rim from one region beyond it to another.
+/// \param from_line from the nearest point of the line
+void give_way_at_line(const Vec3& from_line, ContactZone::Narrow& narrow) {
+  const double distance = from_line.norm();
+  const double opening = std::sqrt(2 * std::max(0.0, 1 + narrow.cosine));
+  const double deficit = Zone::slope * (touching_thickness(distance) - opening * distance);
+  if (!(deficit > narrow.deficit)) return;
+  narrow.deficit = deficit;
+  constexpr double narrowing = 2 * Zone::touching_thickness / (Zone::reach * Zone::reach);
+  narrow.slope = Vec3::Zero();
+  if (distance > tolerance::smallest_distance)
+    narrow.slope = -Zone::slope * (narrowing + opening / distance) * from_line;
+}
+
 }  // namespace
 
 std::vector<TouchingEdge> touching_edges(const LabelledComplex& complex) {
@@ -114,8 +136,9 @@ void ContactZone::add_touching_edges(const LabelledComplex& complex, const std::
   if (!items.empty()) touching_ = ProjectionTree(points, std::move(items));
 }
 
-double ContactZone::touching_thickness(const Vec3& point, RegionIndex first, RegionIndex second) const {
-  if (touching_.empty()) return 0;
+std::optional<Vec3> ContactZone::from_touching_line(const Vec3& point, RegionIndex first,
+                                                    RegionIndex second) const {
+  if (touching_.empty()) return {};
   const auto hit = touching_.nearest_of(point, Zone::reach, [&](const ProjectionTree::Item& item) {
     const std::vector<RegionIndex>& regions = touching_regions_[item.kind[0]];
     const auto touches = [&](RegionIndex region) {
@@ -123,8 +146,8 @@ double ContactZone::touching_thickness(const Vec3& point, RegionIndex first, Reg
     };
     return touches(first) && touches(second);
   });
-  if (!hit) return 0;
-  return Zone::touching_thickness * (1 - (hit->point - point).squaredNorm() / (Zone::reach * Zone::reach));
+  if (!hit) return {};
+  return point - hit->point;
 }
 
 void ContactZone::add_junctions(const LabelledComplex& complex, const std::vector<Vec3>& points,
@@ -248,27 +271,30 @@ std::pair<const ContactZone::Face*, Vec3> ContactZone::nearest_face(const Vec3& 
 }
 
 std::optional<ContactZone::Narrow> ContactZone::narrow(const Vec3& point, const Nearest& at) const {
-  double touching = at.region == outside_region ? touching_thickness(point, at.across, outside_region) : 0;
-  const double limit = std::max(Zone::widest_narrow, touching) - at.distance.value;
+  std::optional<Vec3> from_line;
+  if (at.region == outside_region) from_line = from_touching_line(point, at.across, outside_region);
+  const double limit = std::max(Zone::widest_narrow, from_line ? touching_thickness(from_line->norm()) : 0) -
+                       at.distance.value;
   if (!(limit > 0)) return {};
   const auto [farther, away] = nearest_face(
       point, limit, [&](const Face& f) { return f.bounds(at.region) && f.across(at.region) != at.across; });
   if (!farther) return {};
-  if (touching > 0) touching = touching_thickness(point, at.across, farther->across(at.region));
+  if (from_line) from_line = from_touching_line(point, at.across, farther->across(at.region));
   const Distance distance =
       away_from(away, away.norm(), farther->front == at.region ? farther->normal : Vec3(-farther->normal));
   const double cosine = distance.gradient.dot(at.distance.gradient);
-  if (cosine > Zone::facing && !(touching > 0)) return {};
-  const double thickness = at.distance.value + distance.value;
+  if (cosine > Zone::facing && !from_line) return {};
+  Narrow narrow{farther->across(at.region), distance, at.distance.value + distance.value, cosine, 0,
+                Vec3::Zero()};
   const double share = std::clamp((Zone::facing - cosine) / (Zone::facing - Zone::facing_entirely), 0.0, 1.0);
-  const double smallest = std::max(
-      touching, share * (at.region == outside_region ? Zone::min_thickness : Zone::min_refined_thickness));
-  return Narrow{farther->across(at.region),
-                distance,
-                thickness,
-                cosine,
-                Zone::slope * std::max(0.0, smallest - thickness),
-                -Zone::slope * (at.distance.gradient + distance.gradient)};
+  const double smallest =
+      share * (at.region == outside_region ? Zone::min_thickness : Zone::min_refined_thickness);
+  if (const double lack = smallest - narrow.thickness; lack > 0) {
+    narrow.deficit = Zone::slope * lack;
+    narrow.slope = -Zone::slope * (at.distance.gradient + distance.gradient);
+  }
+  if (from_line) give_way_at_line(*from_line, narrow);
+  return narrow;
 }
 
 std::optional<ContactZone::Distance> ContactZone::distance(const Vec3& point, RegionIndex region) const {

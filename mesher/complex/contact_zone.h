@@ -84,9 +84,9 @@ class ContactZone {
                      const std::array<int, 3>& cells);
   void add_narrow_parts(const std::array<int, 3>& cells);
   void add_touching_edges(const LabelledComplex& complex, const std::vector<Vec3>& points);
-  /// The thickness below which the outside gives way at a point because two bodies touch in a line near it;
-  /// with outside_region, any bodies.
-  double touching_thickness(const Vec3& point, RegionIndex first, RegionIndex second) const;
+  /// From the nearest line in which both bodies touch to the point, if it is near; with outside_region, any
+  /// bodies.
+  std::optional<Vec3> from_touching_line(const Vec3& point, RegionIndex first, RegionIndex second) const;
   bool faces_another_pair(const Face& face) const;
   /// The nearest face within `limit` for which `accepts(face)` holds, or null, and the vector from it to the
   /// point.

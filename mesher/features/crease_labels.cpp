@@ -2,7 +2,6 @@
 #include "mesher/features/crease_labels.h"
 
 #include <cmath>
-#include <map>
 
 #include "common/parallel/parallel_sort.h"
 #include "mesher/tuning/cut_tuning.h"
@@ -42,6 +41,7 @@ CreaseLabels::CreaseLabels(TetMesh& mesh, const FeatureSurface& surface, double 
   split_chords(chords);
   snap_points();
   resolve_rest();
+  split_chords_of_creases();
   take_kinks();
   dissolve_islands();
 }

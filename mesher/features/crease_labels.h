@@ -136,6 +136,7 @@ class CreaseLabels {
   std::vector<SheetEdge> find_chords() const;
   std::vector<SheetEdge> find_chords_over_gaps() const;
   void split_chords(const std::vector<SheetEdge>& chords);
+  void split_chords_of_creases();
   FeatureLabel patch_label(const Vec3& p, std::size_t sheet, const Vec3* normal) const;
   void split(Index u, Index v, double share, const FeatureLabel& label);
   void track(const std::vector<SheetEdge>& edges);

@@ -94,6 +94,35 @@ void CreaseLabels::split_chords(const std::vector<SheetEdge>& chords) {
   }
 }
 
+/// Splits the edges inside a patch that join two points of one of its creases. Where the crease is straight such
+/// an edge would pass through the crease's points between its ends, and points of the patch between it and the
+/// crease could not leave the crease.
+void CreaseLabels::split_chords_of_creases() {
+  if (!surface_.has_junctions()) return;
+  struct Side {
+    SheetEdge edge;
+    Index opposite;
+    auto operator<=>(const Side&) const = default;
+  };
+  const auto is_on_crease = [&](Index p) { return of(p).kind == Kind::crease || of(p).kind == Kind::corner; };
+  std::vector<Side> sides;
+  for (const InterfaceTriangle& t : mesh_.interfaces)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index u = t.ids[k], v = t.ids[(k + 1) % 3], opposite = t.ids[(k + 2) % 3];
+      if (!is_on_crease(u) || !is_on_crease(v) || of(opposite).kind != Kind::patch) continue;
+      const auto sheet = sheet_of(t);
+      if (sheet && on_sheet(number_[u], *sheet).common(on_sheet(number_[v], *sheet)).size() > 1)
+        sides.push_back({{std::min(u, v), std::max(u, v), *sheet}, opposite});
+    }
+  std::sort(sides.begin(), sides.end());
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    const auto& [u, v, sheet] = sides[i].edge;
+    if (sides[i - 1].edge != sides[i].edge) continue;
+    const PatchSet both = of(sides[i - 1].opposite).patches.common(of(sides[i].opposite).patches);
+    if (both.size() == 1) split(u, v, 0.5, {Kind::patch, both, no_index, {}});
+  }
+}
+
 void CreaseLabels::track(const std::vector<SheetEdge>& edges) {
   // Include the neighbours of crossing edges: after a vertex has moved onto a crease, its other edges may
   // cross one.

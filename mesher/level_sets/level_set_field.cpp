@@ -121,13 +121,13 @@ class LevelSetField::Sampler final : public FieldSampler, private SheetSampler {
     const auto negative = [](const ContactZone::Distance& d) {
       return ContactZone::Distance{-d.value, -d.gradient};
     };
-    if (r == here.region) return {-near.value + narrow->deficit, -near.gradient + narrow->slope};
     const bool near_first =
         narrow->across == outside_region || (here.across != outside_region && here.across < narrow->across);
     const ContactZone::Distance &first = near_first ? near : far, &later = near_first ? far : near;
     if (r == (near_first ? here.across : narrow->across)) return first;
-    if (later.value - narrow->deficit < -first.value) return negative(first);
-    return {later.value - narrow->deficit, later.gradient - narrow->slope};
+    const ContactZone::Distance moved{later.value - narrow->deficit, later.gradient - narrow->slope};
+    const ContactZone::Distance own = r == here.region ? negative(moved) : moved;
+    return own.value < -first.value ? negative(first) : own;
   }
   bool gives_way() const { return narrow && narrow->deficit > 0; }
   /// The signed distance of a region in the zone: that of its body, and of the other surfaces by which layers

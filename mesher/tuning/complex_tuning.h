@@ -116,7 +116,7 @@ struct ComplexTuning {
     static constexpr double widest_narrow = 1.5;
     /// By how much a region gives way for each voxel that its thickness lacks: larger values make a steeper
     /// rim, at which the lattice is no more accurate.
-    static constexpr double slope = 3;
+    static constexpr double slope = 6;
     /// Cosines between gradients. Regions give way between surfaces that face each other at less than 45
     /// degrees, entirely at less than 37 degrees.
     static constexpr double facing = -0.7, facing_entirely = -0.8;
