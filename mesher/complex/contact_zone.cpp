@@ -59,21 +59,20 @@ double touching_thickness(double distance) {
   return Zone::touching_thickness * (1 - distance * distance / (Zone::reach * Zone::reach));
 }
 
-/// Makes the outside give way between two bodies that touch in a line, if it does not do so by more already.
-/// It is as thick as the chord of the wedge between them is long, at the point's distance from the line: so its
-/// rim is a circle around the line, which meets both bodies at right angles. Where they meet at smaller ones, an
-/// edge of the lattice can pass through the thin rim from one region beyond it to another.
-/// \param from_line from the nearest point of the line
-void give_way_at_line(const Vec3& from_line, ContactZone::Narrow& narrow) {
-  const double distance = from_line.norm();
-  const double opening = std::sqrt(2 * std::max(0.0, 1 + narrow.cosine));
-  const double deficit = Zone::slope * (touching_thickness(distance) - opening * distance);
-  if (!(deficit > narrow.deficit)) return;
-  narrow.deficit = deficit;
-  constexpr double narrowing = 2 * Zone::touching_thickness / (Zone::reach * Zone::reach);
-  narrow.slope = Vec3::Zero();
-  if (distance > tolerance::smallest_distance)
-    narrow.slope = -Zone::slope * (narrowing + opening / distance) * from_line;
+/// True for points of a complex at which a line in which bodies touch ends, and no contact goes on.
+std::vector<std::uint8_t> ends_of_lines(const LabelledComplex& complex,
+                                        const std::vector<TouchingEdge>& edges) {
+  std::vector<std::uint8_t> uses(complex.points.size(), 0);
+  const auto use = [&](Index p, int count) {
+    uses[p] = static_cast<std::uint8_t>(std::min(2, uses[p] + count));
+  };
+  for (const TouchingEdge& e : edges)
+    for (const Index p : e.ends) use(p, 1);
+  for (Index f = 0; f < complex.faces.size(); ++f)
+    if (complex.is_contact(f))
+      for (const Index p : complex.faces[f].ids) use(p, 2);
+  for (std::uint8_t& u : uses) u = u == 1;
+  return uses;
 }
 
 }  // namespace
@@ -126,18 +125,21 @@ ContactZone::ContactZone(const LabelledComplex& complex, const GridFrame& voxels
 }
 
 void ContactZone::add_touching_edges(const LabelledComplex& complex, const std::vector<Vec3>& points) {
+  std::vector<TouchingEdge> edges = touching_edges(complex);
+  const std::vector<std::uint8_t> is_end = ends_of_lines(complex, edges);
   std::vector<ProjectionTree::Item> items;
-  for (TouchingEdge& edge : touching_edges(complex)) {
+  for (TouchingEdge& edge : edges) {
     const auto& [a, b] = edge.ends;
     if (touching_regions_.empty() || touching_regions_.back() != edge.regions)
       touching_regions_.push_back(std::move(edge.regions));
-    items.push_back({{a, b, b}, {static_cast<std::uint32_t>(touching_regions_.size() - 1), 0, 0}});
+    items.push_back(
+        {{a, b, b}, {static_cast<std::uint32_t>(touching_regions_.size() - 1), is_end[a], is_end[b]}});
   }
   if (!items.empty()) touching_ = ProjectionTree(points, std::move(items));
 }
 
-std::optional<Vec3> ContactZone::from_touching_line(const Vec3& point, RegionIndex first,
-                                                    RegionIndex second) const {
+std::optional<ContactZone::NearLine> ContactZone::near_line(const Vec3& point, RegionIndex first,
+                                                            RegionIndex second) const {
   if (touching_.empty()) return {};
   const auto hit = touching_.nearest_of(point, Zone::reach, [&](const ProjectionTree::Item& item) {
     const std::vector<RegionIndex>& regions = touching_regions_[item.kind[0]];
@@ -147,7 +149,38 @@ std::optional<Vec3> ContactZone::from_touching_line(const Vec3& point, RegionInd
     return touches(first) && touches(second);
   });
   if (!hit) return {};
-  return point - hit->point;
+  NearLine line{point - hit->point, HUGE_VAL, Vec3::Zero()};
+  const ProjectionTree::Item& item = touching_.items()[hit->item];
+  for (const int k : {0, 1}) {
+    if (!item.kind[static_cast<std::size_t>(k + 1)]) continue;
+    const Vec3 &end = touching_.corner(item, k), inwards = (touching_.corner(item, 1 - k) - end).normalized();
+    if (const double from_end = (point - end).dot(inwards); from_end < line.from_end) {
+      line.from_end = from_end;
+      line.inwards = inwards;
+    }
+  }
+  return line;
+}
+
+/// Makes the outside give way between two bodies that touch in a line, if it does not do so by more already. It
+/// counts as thick as the chord of the wedge between them is long at the point's distance from the line, and the
+/// line's ends bound it: so its rim is a circle around the line, and it meets all surfaces at about right angles.
+/// Where it ran out at smaller ones, edges of the lattice could pass through the thin rim.
+void ContactZone::give_way(const NearLine& line, Narrow& narrow) {
+  const double distance = line.away.norm();
+  const double opening = std::sqrt(2 * std::max(0.0, 1 + narrow.cosine));
+  const double lack = touching_thickness(distance) - opening * distance;
+  const double deficit = Zone::slope * std::min(lack, line.from_end);
+  if (!(deficit > narrow.deficit)) return;
+  narrow.deficit = deficit;
+  if (line.from_end < lack) {
+    narrow.slope = Zone::slope * line.inwards;
+    return;
+  }
+  constexpr double narrowing = 2 * Zone::touching_thickness / (Zone::reach * Zone::reach);
+  narrow.slope = Vec3::Zero();
+  if (distance > tolerance::smallest_distance)
+    narrow.slope = -Zone::slope * (narrowing + opening / distance) * line.away;
 }
 
 void ContactZone::add_junctions(const LabelledComplex& complex, const std::vector<Vec3>& points,
@@ -271,19 +304,19 @@ std::pair<const ContactZone::Face*, Vec3> ContactZone::nearest_face(const Vec3& 
 }
 
 std::optional<ContactZone::Narrow> ContactZone::narrow(const Vec3& point, const Nearest& at) const {
-  std::optional<Vec3> from_line;
-  if (at.region == outside_region) from_line = from_touching_line(point, at.across, outside_region);
-  const double limit = std::max(Zone::widest_narrow, from_line ? touching_thickness(from_line->norm()) : 0) -
-                       at.distance.value;
+  std::optional<NearLine> line;
+  if (at.region == outside_region) line = near_line(point, at.across, outside_region);
+  const double limit =
+      std::max(Zone::widest_narrow, line ? touching_thickness(line->away.norm()) : 0) - at.distance.value;
   if (!(limit > 0)) return {};
   const auto [farther, away] = nearest_face(
       point, limit, [&](const Face& f) { return f.bounds(at.region) && f.across(at.region) != at.across; });
   if (!farther) return {};
-  if (from_line) from_line = from_touching_line(point, at.across, farther->across(at.region));
+  if (line) line = near_line(point, at.across, farther->across(at.region));
   const Distance distance =
       away_from(away, away.norm(), farther->front == at.region ? farther->normal : Vec3(-farther->normal));
   const double cosine = distance.gradient.dot(at.distance.gradient);
-  if (cosine > Zone::facing && !from_line) return {};
+  if (cosine > Zone::facing && !line) return {};
   Narrow narrow{farther->across(at.region), distance, at.distance.value + distance.value, cosine, 0,
                 Vec3::Zero()};
   const double share = std::clamp((Zone::facing - cosine) / (Zone::facing - Zone::facing_entirely), 0.0, 1.0);
@@ -293,7 +326,7 @@ std::optional<ContactZone::Narrow> ContactZone::narrow(const Vec3& point, const 
     narrow.deficit = Zone::slope * lack;
     narrow.slope = -Zone::slope * (at.distance.gradient + distance.gradient);
   }
-  if (from_line) give_way_at_line(*from_line, narrow);
+  if (line) give_way(*line, narrow);
   return narrow;
 }
 

@@ -80,13 +80,20 @@ class ContactZone {
     std::pair<RegionIndex, RegionIndex> pair() const { return std::minmax(behind, front); }
   };
 
+  /// A point near a line in which bodies touch.
+  struct NearLine {
+    Vec3 away;        ///< from the nearest point of the line
+    double from_end;  ///< distance from the plane across the line's end; infinite if the line goes on
+    Vec3 inwards;     ///< unit, from the end
+  };
+
   void add_junctions(const LabelledComplex& complex, const std::vector<Vec3>& points,
                      const std::array<int, 3>& cells);
   void add_narrow_parts(const std::array<int, 3>& cells);
   void add_touching_edges(const LabelledComplex& complex, const std::vector<Vec3>& points);
-  /// From the nearest line in which both bodies touch to the point, if it is near; with outside_region, any
-  /// bodies.
-  std::optional<Vec3> from_touching_line(const Vec3& point, RegionIndex first, RegionIndex second) const;
+  /// The nearest line in which both bodies touch, if one is near; with outside_region, any bodies.
+  std::optional<NearLine> near_line(const Vec3& point, RegionIndex first, RegionIndex second) const;
+  static void give_way(const NearLine& line, Narrow& narrow);
   bool faces_another_pair(const Face& face) const;
   /// The nearest face within `limit` for which `accepts(face)` holds, or null, and the vector from it to the
   /// point.
@@ -96,7 +103,7 @@ class ContactZone {
 
   BoxTree tree_;
   std::vector<std::vector<RegionIndex>> touching_regions_;
-  ProjectionTree touching_;  ///< touching_edges(); kinds are indices into touching_regions_
+  ProjectionTree touching_;  ///< touching_edges(); kinds: index into touching_regions_, and which points are ends of lines
   std::vector<Face> faces_;  ///< in the order of the tree
   std::unordered_map<std::uint64_t, Mask> leaves_;
 };

@@ -109,14 +109,15 @@ struct ComplexTuning {
     static constexpr double min_thickness = 1.25, min_refined_thickness = min_thickness / 8;
     /// Thickness below which the outside gives way at a line in which bodies touch, voxels; it falls to
     /// nothing at `reach`. Between faces at right angles the bodies are then joined over 1.4 voxels on either
-    /// side: less tears.
+    /// side: over less the strip tears.
     static constexpr double touching_thickness = 2.8;
     /// Distance over which narrow parts are looked for, voxels: that of sheets that need smaller cells
     /// (DistanceTuning::Sheets::min_cells).
     static constexpr double widest_narrow = 1.5;
-    /// By how much a region gives way for each voxel that its thickness lacks: larger values make a steeper
-    /// rim, at which the lattice is no more accurate.
-    static constexpr double slope = 6;
+    /// By how much a region gives way for each voxel that its thickness lacks: steeper rims tear less but give
+    /// more volume away; at parallel faces a region is gone at 80 % of the thickness at which it begins to give
+    /// way.
+    static constexpr double slope = 4;
     /// Cosines between gradients. Regions give way between surfaces that face each other at less than 45
     /// degrees, entirely at less than 37 degrees.
     static constexpr double facing = -0.7, facing_entirely = -0.8;
