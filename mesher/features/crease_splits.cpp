@@ -94,9 +94,9 @@ void CreaseLabels::split_chords(const std::vector<SheetEdge>& chords) {
   }
 }
 
-/// Splits the edges inside a patch that join two points of one of its creases. Where the crease is straight such
-/// an edge would pass through the crease's points between its ends, and points of the patch between it and the
-/// crease could not leave the crease.
+/// Splits the edges inside a patch that join two points of one of its creases. Where the crease is straight
+/// such an edge would pass through the crease's points between its ends, and points of the patch between it
+/// and the crease could not leave the crease.
 void CreaseLabels::split_chords_of_creases() {
   if (!surface_.has_junctions()) return;
   struct Side {
@@ -111,7 +111,9 @@ void CreaseLabels::split_chords_of_creases() {
       const Index u = t.ids[k], v = t.ids[(k + 1) % 3], opposite = t.ids[(k + 2) % 3];
       if (!is_on_crease(u) || !is_on_crease(v) || of(opposite).kind != Kind::patch) continue;
       const auto sheet = sheet_of(t);
-      if (sheet && on_sheet(number_[u], *sheet).common(on_sheet(number_[v], *sheet)).size() > 1)
+      // Borders of inner sheets are creases of their continuation.
+      if (!sheet || surface_.is_inner(*sheet)) continue;
+      if (on_sheet(number_[u], *sheet).common(on_sheet(number_[v], *sheet)).size() > 1)
         sides.push_back({{std::min(u, v), std::max(u, v), *sheet}, opposite});
     }
   std::sort(sides.begin(), sides.end());
