@@ -7,6 +7,7 @@
 #include <array>
 #include <map>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "tests/common/features/parts.h"
@@ -18,8 +19,9 @@
 namespace tetwright::narrow_parts_test {
 namespace {
 
-TriangleMesh moved(TriangleMesh mesh, const Vec3& by) {
-  const auto turn = Eigen::AngleAxisd(0.6, Vec3(1, 2, 3).normalized());
+const Eigen::AngleAxisd common_turn(0.6, Vec3(1, 2, 3).normalized());
+
+TriangleMesh moved(TriangleMesh mesh, const Vec3& by, const Eigen::AngleAxisd& turn = common_turn) {
   for (Vec3& p : mesh.points) p = turn * (p + by);
   return mesh;
 }
@@ -98,13 +100,32 @@ TEST(NarrowParts, BodiesAroundALineTouchOnlyThoseBesideThem) {
   }
 }
 
+/// The mesh of two cubes that touch in an edge.
+TetMesh mesh_of_touching_cubes(const Eigen::AngleAxisd& turn, int resolution) {
+  return mesh_of({moved(unit_cube(), Vec3::Zero(), turn), moved(unit_cube(), Vec3(1, 1, 0), turn)},
+                 resolution);
+}
+
 TEST(NarrowParts, BodiesThatTouchInALineAreJoinedInOnePiece) {
-  for (const int resolution : {16, 23, 30}) {
-    const TetMesh mesh =
-        mesh_of({moved(unit_cube(), Vec3::Zero()), moved(unit_cube(), Vec3(1, 1, 0))}, resolution);
+  const Eigen::AngleAxisd other_turn(2, Vec3(1, 5, 1).normalized());
+  for (const auto& [turn, resolution] :
+       {std::pair(common_turn, 16), {common_turn, 23}, {common_turn, 30}, {other_turn, 36}}) {
+    const TetMesh mesh = mesh_of_touching_cubes(turn, resolution);
     EXPECT_EQ(euler_number(mesh, [](const InterfaceTriangle& t) { return t.other.has_value(); }), 1)
         << resolution;
     EXPECT_EQ(euler_number(mesh, [](const InterfaceTriangle& t) { return !t.other; }), 2) << resolution;
+  }
+}
+
+TEST(NarrowParts, BodiesThatTouchInALineAreNotJoinedBeyondItsEnds) {
+  for (const int resolution : {16, 23, 30}) {
+    double beyond = 0;
+    for (const Vec3& p : mesh_of_touching_cubes(common_turn, resolution).points) {
+      const double height = (common_turn.inverse() * p).z();
+      beyond = std::max({beyond, -height, height - 1});
+    }
+    // Less than half a cell.
+    EXPECT_LT(beyond, 1.0 / resolution) << resolution;
   }
 }
 
