@@ -402,8 +402,11 @@ std::optional<FieldSheet> LevelSetField::Sampler::sheet_here() const {
     if (narrow->thickness < Sheets::min_thickness) return {};
     return FieldSheet{here.region, per_voxel * narrow->thickness, false};
   }
-  // A wedge is thin at its edge in cells of any size: if it is sharp, the smallest ones have to do there.
-  if (narrow->cosine > Sheets::max_wedge_cosine) return {};
+  // A wedge is thin at its edge in cells of any size: if it is sharp, or no other material fills the space
+  // around it, the smallest ones have to do there.
+  if (narrow->cosine > Sheets::max_wedge_cosine && here.across != outside_region &&
+      narrow->across != outside_region)
+    return {};
   constexpr double smallest = Sheets::min_cells / (1 << DomainTuning::Refinement::max_levels);
   return FieldSheet{here.region, per_voxel * std::max(smallest, narrow->thickness), false};
 }

@@ -45,7 +45,8 @@ struct DistanceTuning {
     /// Cosine between the surfaces' gradients below which the region between them is a sheet. Otherwise it is
     /// a wedge, which is thin at its edge in cells of any size.
     static constexpr double max_cosine = -0.95;
-    /// Cosine above which a wedge needs no smaller cells at its edge: its angle is larger than 37 degrees.
+    /// Cosine above which a wedge between materials needs no smaller cells at its edge: its angle is larger
+    /// than 37 degrees.
     static constexpr double max_wedge_cosine = -0.8;
     /// Thinner sheets (voxels) are gaps between two faces meant to coincide.
     static constexpr double min_thickness = 0.1;
