@@ -152,7 +152,7 @@ std::optional<ContactZone::NearLine> ContactZone::near_line(const Vec3& point, R
   NearLine line{point - hit->point, HUGE_VAL, Vec3::Zero()};
   const ProjectionTree::Item& item = touching_.items()[hit->item];
   for (const int k : {0, 1}) {
-    if (!item.kind[static_cast<std::size_t>(k + 1)]) continue;
+    if (!item.kind[k == 0 ? 1U : 2U]) continue;
     const Vec3 &end = touching_.corner(item, k), inwards = (touching_.corner(item, 1 - k) - end).normalized();
     if (const double from_end = (point - end).dot(inwards); from_end < line.from_end) {
       line.from_end = from_end;
