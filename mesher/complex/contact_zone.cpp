@@ -162,10 +162,10 @@ std::optional<ContactZone::NearLine> ContactZone::near_line(const Vec3& point, R
   return line;
 }
 
-/// Makes the outside give way between two bodies that touch in a line, if it does not do so by more already. It
-/// counts as thick as the chord of the wedge between them is long at the point's distance from the line, and the
-/// line's ends bound it: so its rim is a circle around the line, and it meets all surfaces at about right angles.
-/// Where it ran out at smaller ones, edges of the lattice could pass through the thin rim.
+/// Makes the outside give way between two bodies that touch in a line, if it does not do so by more already.
+/// It counts as thick as the chord of the wedge between them is long at the point's distance from the line,
+/// and the line's ends bound it: so its rim is a circle around the line, and it meets all surfaces at about
+/// right angles. Where it ran out at smaller ones, edges of the lattice could pass through the thin rim.
 void ContactZone::give_way(const NearLine& line, Narrow& narrow) {
   const double distance = line.away.norm();
   const double opening = std::sqrt(2 * std::max(0.0, 1 + narrow.cosine));
@@ -317,8 +317,8 @@ std::optional<ContactZone::Narrow> ContactZone::narrow(const Vec3& point, const 
       away_from(away, away.norm(), farther->front == at.region ? farther->normal : Vec3(-farther->normal));
   const double cosine = distance.gradient.dot(at.distance.gradient);
   if (cosine > Zone::facing && !line) return {};
-  Narrow narrow{farther->across(at.region), distance, at.distance.value + distance.value, cosine, 0,
-                Vec3::Zero()};
+  Narrow narrow{
+      farther->across(at.region), distance, at.distance.value + distance.value, cosine, 0, Vec3::Zero()};
   const double share = std::clamp((Zone::facing - cosine) / (Zone::facing - Zone::facing_entirely), 0.0, 1.0);
   const double smallest =
       share * (at.region == outside_region ? Zone::min_thickness : Zone::min_refined_thickness);

@@ -103,7 +103,8 @@ class ContactZone {
 
   BoxTree tree_;
   std::vector<std::vector<RegionIndex>> touching_regions_;
-  ProjectionTree touching_;  ///< touching_edges(); kinds: index into touching_regions_, and which points are ends of lines
+  ProjectionTree touching_;  ///< touching_edges(); kinds: index into touching_regions_, and which points are
+                             ///< ends of lines
   std::vector<Face> faces_;  ///< in the order of the tree
   std::unordered_map<std::uint64_t, Mask> leaves_;
 };

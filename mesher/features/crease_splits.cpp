@@ -94,9 +94,9 @@ void CreaseLabels::split_chords(const std::vector<SheetEdge>& chords) {
   }
 }
 
-/// Splits the edges inside a patch that join two points of one of its creases. Where the crease is straight such
-/// an edge would pass through the crease's points between its ends, and points of the patch between it and the
-/// crease could not leave the crease.
+/// Splits the edges inside a patch that join two points of one of its creases. Where the crease is straight
+/// such an edge would pass through the crease's points between its ends, and points of the patch between it
+/// and the crease could not leave the crease.
 void CreaseLabels::split_chords_of_creases() {
   if (!surface_.has_junctions()) return;
   struct Side {

@@ -114,9 +114,9 @@ struct ComplexTuning {
     /// Distance over which narrow parts are looked for, voxels: that of sheets that need smaller cells
     /// (DistanceTuning::Sheets::min_cells).
     static constexpr double widest_narrow = 1.5;
-    /// By how much a region gives way for each voxel that its thickness lacks: steeper rims tear less but give
-    /// more volume away; at parallel faces a region is gone at 80 % of the thickness at which it begins to give
-    /// way.
+    /// By how much a region gives way for each voxel that its thickness lacks: steeper rims tear less but
+    /// give more volume away; at parallel faces a region is gone at 80 % of the thickness at which it begins
+    /// to give way.
     static constexpr double slope = 4;
     /// Cosines between gradients. Regions give way between surfaces that face each other at less than 45
     /// degrees, entirely at less than 37 degrees.

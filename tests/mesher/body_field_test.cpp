@@ -3,10 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <numbers>
 
 #include "mesher/labels/label_field.h"
 #include "tests/common/temporary_folder.h"
+#include "tests/mesher/fields.h"
 #include "tests/mesher/test_surfaces.h"
 #include "tetwright/mesher.h"
 #include "tetwright/mesher_input.h"
@@ -80,6 +82,31 @@ TEST(FieldBuilder, FieldsOfTurnedAndMirroredLabels) {
   Eigen::Matrix3d tilted = turn;
   tilted.col(2) += 0.3 * tilted.col(1);
   expect_same_again(tilted, 1, 0.05);
+}
+
+/// Where the outside between two bodies gives way, all of it becomes the later one.
+TEST(BodyField, AClosedGapLeavesTheEarlierBodyAsItIs) {
+  constexpr double cell = 0.05;
+  const TriangleMesh box = make_box(Vec3::Zero(), Vec3::Ones());
+  const std::array<TriangleMesh, 2> others{make_box({1, 1, 0}, {2, 2, 1}),
+                                           make_sphere(0.45, Vec3(0.5, 0.5, 1.45))};
+  for (const TriangleMesh& other : others) {
+    const auto field = make_field({box, other}, cell);
+    const auto sampler = field->sampler();
+    std::size_t filled = 0;
+    for (double x = 0.01; x < 2; x += 0.4 * cell)
+      for (double y = 0.01; y < 2; y += 0.4 * cell)
+        for (const double z : {0.5, 1.01, 1.02, 1.03, 1.04}) {
+          const Vec3 p(x, y, z);
+          const RegionIndex region = sampler->nearest(field->frame().to_grid(p)).region;
+          const bool is_in_box = p.maxCoeff() < 1;
+          EXPECT_EQ(region == 1, is_in_box) << p.transpose();
+          const bool is_in_other =
+              &other == &others[0] ? x > 1 && y > 1 && z < 1 : (p - Vec3(0.5, 0.5, 1.45)).norm() < 0.45;
+          filled += region == 2 && !is_in_other;
+        }
+    EXPECT_GT(filled, 10u);
+  }
 }
 
 }  // namespace

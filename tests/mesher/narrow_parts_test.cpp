@@ -18,8 +18,8 @@
 namespace tetwright::narrow_parts_test {
 namespace {
 
-TriangleMesh moved(TriangleMesh mesh, const Vec3& by) {
-  const auto turn = Eigen::AngleAxisd(0.6, Vec3(1, 2, 3).normalized());
+TriangleMesh moved(TriangleMesh mesh, const Vec3& by, double angle = 0.6) {
+  const auto turn = Eigen::AngleAxisd(angle, Vec3(1, 2, 3).normalized());
   for (Vec3& p : mesh.points) p = turn * (p + by);
   return mesh;
 }
@@ -99,12 +99,22 @@ TEST(NarrowParts, BodiesAroundALineTouchOnlyThoseBesideThem) {
 }
 
 TEST(NarrowParts, BodiesThatTouchInALineAreJoinedInOnePiece) {
-  for (const int resolution : {16, 23, 30}) {
-    const TetMesh mesh =
-        mesh_of({moved(unit_cube(), Vec3::Zero()), moved(unit_cube(), Vec3(1, 1, 0))}, resolution);
+  struct Case {
+    double angle;
+    int resolution;
+  };
+  for (const auto& [angle, resolution] :
+       {Case{0.6, 16}, Case{0.6, 23}, Case{0.6, 30}, Case{3.6, 26}, Case{4.3, 18}}) {
+    const TetMesh mesh = mesh_of(
+        {moved(unit_cube(), Vec3::Zero(), angle), moved(unit_cube(), Vec3(1, 1, 0), angle)}, resolution);
     EXPECT_EQ(euler_number(mesh, [](const InterfaceTriangle& t) { return t.other.has_value(); }), 1)
-        << resolution;
-    EXPECT_EQ(euler_number(mesh, [](const InterfaceTriangle& t) { return !t.other; }), 2) << resolution;
+        << angle << " " << resolution;
+    EXPECT_EQ(euler_number(mesh, [](const InterfaceTriangle& t) { return !t.other; }), 2)
+        << angle << " " << resolution;
+    for (const MaterialTag tag : {1, 2})
+      EXPECT_EQ(euler_number(mesh, [&](const InterfaceTriangle& t) { return !t.other && t.material == tag; }),
+                1)
+          << angle << " " << resolution << " " << tag;
   }
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "tests/common/features/parts.h"
 #include "tests/mesher/test_surfaces.h"
@@ -44,6 +45,63 @@ TEST(ContactZone, PointsBesideAContactAreOnTheirSide) {
   EXPECT_EQ(zone.nearest({4.001, 4, 5}).region, 1);
   EXPECT_EQ(zone.nearest({4, 4.001, 5}).region, 2);
   EXPECT_NEAR(zone.nearest({4.5, 3.5, 5}).distance.value, std::sqrt(0.5), 1e-9);
+}
+
+/// Two boxes that touch along the line x = y = 5, z from 2 to 8.
+MesherInput boxes_at_line() {
+  return make_mesher_input({{"left", 1, make_box({2, 2, 2}, {5, 5, 8}), "left.off"},
+                            {"right", 2, make_box({5, 5, 2}, {8, 8, 8}), "right.off"}});
+}
+
+double deficit_at(const ContactZone& zone, const Vec3& point) {
+  const auto narrow = zone.narrow(point, zone.nearest(point));
+  return narrow ? narrow->deficit : 0;
+}
+
+Vec3 beside_line(double distance, double degrees, double z) {
+  const double angle = degrees * std::numbers::pi / 180;
+  return {5 + distance * std::cos(angle), 5 - distance * std::sin(angle), z};
+}
+
+TEST(ContactZone, TheOutsideGivesWayInACircleAroundALineInWhichBodiesTouch) {
+  const MesherInput input = boxes_at_line();
+  const ContactZone zone(*input.complex, frame());
+  for (const double distance : {0.5, 1.0, 1.3}) {
+    const double deficit = deficit_at(zone, beside_line(distance, 45, 5));
+    EXPECT_GT(deficit, 0) << distance;
+    for (const double degrees : {2.0, 20.0, 70.0, 88.0})
+      EXPECT_NEAR(deficit_at(zone, beside_line(distance, degrees, 5)), deficit, 1e-9)
+          << distance << " " << degrees;
+  }
+  EXPECT_EQ(deficit_at(zone, beside_line(2, 45, 5)), 0);
+  EXPECT_EQ(deficit_at(zone, beside_line(2, 2, 5)), 0);
+}
+
+TEST(ContactZone, TheOutsideDoesNotGiveWayBeyondTheEndOfALine) {
+  const MesherInput input = boxes_at_line();
+  const ContactZone zone(*input.complex, frame());
+  EXPECT_GT(deficit_at(zone, beside_line(0.5, 45, 2.1)), 0);
+  for (const double degrees : {-45.0, 10.0, 45.0, 80.0, 135.0}) {
+    EXPECT_EQ(deficit_at(zone, beside_line(0.5, degrees, 1.99)), 0) << degrees;
+    EXPECT_EQ(deficit_at(zone, beside_line(0.5, degrees, 8.01)), 0) << degrees;
+  }
+}
+
+TEST(ContactZone, SlopesAreGradientsOfDeficits) {
+  const MesherInput input = boxes_at_line();
+  const ContactZone zone(*input.complex, frame());
+  constexpr double step = 1e-5;
+  for (const double z : {5.0, 2.2}) {
+    const Vec3 at = beside_line(0.7, 30, z);
+    const auto narrow = zone.narrow(at, zone.nearest(at));
+    ASSERT_TRUE(narrow) << z;
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vec3 by = step * Vec3::Unit(axis);
+      EXPECT_NEAR((deficit_at(zone, at + by) - deficit_at(zone, at - by)) / (2 * step), narrow->slope[axis],
+                  1e-6)
+          << z << " " << axis;
+    }
+  }
 }
 
 }  // namespace
