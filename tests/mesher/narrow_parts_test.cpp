@@ -112,8 +112,13 @@ TEST(NarrowParts, BodiesThatTouchInALineAreJoinedInOnePiece) {
        {std::pair(common_turn, 16), {common_turn, 23}, {common_turn, 30}, {other_turn, 36}}) {
     const TetMesh mesh = mesh_of_touching_cubes(turn, resolution);
     EXPECT_EQ(euler_number(mesh, [](const InterfaceTriangle& t) { return t.other.has_value(); }), 1)
-        << resolution;
-    EXPECT_EQ(euler_number(mesh, [](const InterfaceTriangle& t) { return !t.other; }), 2) << resolution;
+        << angle << " " << resolution;
+    EXPECT_EQ(euler_number(mesh, [](const InterfaceTriangle& t) { return !t.other; }), 2)
+        << angle << " " << resolution;
+    for (const MaterialTag tag : {1, 2})
+      EXPECT_EQ(euler_number(mesh, [&](const InterfaceTriangle& t) { return !t.other && t.material == tag; }),
+                1)
+          << angle << " " << resolution << " " << tag;
   }
 }
 
