@@ -94,9 +94,9 @@ void CreaseLabels::split_chords(const std::vector<SheetEdge>& chords) {
   }
 }
 
-/// Splits the edges inside a patch that join two points of one of its creases. Where the crease is straight
-/// such an edge would pass through the crease's points between its ends, and points of the patch between it
-/// and the crease could not leave the crease.
+/// Splits the edges inside a patch that join two points of one of its creases and enclose a point of the
+/// patch between them and the crease. Where the crease is straight the point could not leave it, and would
+/// hold back those around it.
 void CreaseLabels::split_chords_of_creases() {
   if (!surface_.has_junctions()) return;
   struct Side {
@@ -105,6 +105,11 @@ void CreaseLabels::split_chords_of_creases() {
     auto operator<=>(const Side&) const = default;
   };
   const auto is_on_crease = [&](Index p) { return of(p).kind == Kind::crease || of(p).kind == Kind::corner; };
+  const auto is_enclosed = [&](Index p) {
+    bool is = true;
+    for_neighbours(number_[p], [&](Index q) { is &= is_on_crease(q) && of(q).patches.meets(of(p).patches); });
+    return is;
+  };
   std::vector<Side> sides;
   for (const InterfaceTriangle& t : mesh_.interfaces)
     for (std::size_t k = 0; k < 3; ++k) {
@@ -119,9 +124,9 @@ void CreaseLabels::split_chords_of_creases() {
   std::sort(sides.begin(), sides.end());
   for (std::size_t i = 1; i < sides.size(); ++i) {
     const auto& [u, v, sheet] = sides[i].edge;
-    if (sides[i - 1].edge != sides[i].edge) continue;
-    const PatchSet both = of(sides[i - 1].opposite).patches.common(of(sides[i].opposite).patches);
-    if (both.size() == 1) split(u, v, 0.5, {Kind::patch, both, no_index, {}});
+    const Index a = sides[i - 1].opposite, b = sides[i].opposite;
+    if (sides[i - 1].edge != sides[i].edge || !of(a).patches.meets(of(b).patches)) continue;
+    if (is_enclosed(a) || is_enclosed(b)) split(u, v, 0.5, {Kind::patch, of(a).patches, no_index, {}});
   }
 }
 

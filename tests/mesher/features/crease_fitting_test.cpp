@@ -159,6 +159,23 @@ TEST(CreaseFitting, OfBodiesWithinEachOther) {
   EXPECT_EQ(patches.at({1, 2}).size(), 1U);
 }
 
+/// At some resolutions an edge joins points of a crease across a patch and encloses a point of it.
+TEST(CreaseFitting, PointsEnclosedBetweenACreaseAndAChordDoNotHoldItBack) {
+  TriangleMesh bar = make_box({0.7, -0.6, 0.22}, {1.3, 1.7, 0.78});
+  const auto turn = Eigen::AngleAxisd(0.126, Vec3(0.35, -0.47, 0.78).normalized());
+  for (Vec3& p : bar.points) p = turn * p;
+  MesherOptions options;
+  for (const int resolution : {15, 16, 17}) {
+    options.resolution = resolution;
+    const DenseMesh dense =
+        mesh_surfaces(make_mesher_input({{"first", 1, make_box({0, 0, 0}, {2, 1, 1}), "first.off"},
+                                         {"bar", 2, bar, "b.off"}}),
+                      options, nullptr);
+    expect_promises(dense.mesh);
+    EXPECT_LT(numbers_of(dense).max_distance, 1e-6) << resolution;
+  }
+}
+
 TEST(CreaseFitting, GivesTheSameBytesForAnyNumberOfThreads) {
   const TriangleMesh surface = turned(l_block());
   const auto with = [&](unsigned threads) {
