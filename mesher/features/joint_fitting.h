@@ -13,15 +13,17 @@ namespace tetwright {
 
 /// The point of a boundary point's patch, crease or corner nearest to a position, within
 /// CutTuning::Fitting::target_reach cells; nothing if it has none.
-/// \param at input units \param cell size of the cells at the surface, input units
+/// \param at input units
+/// \param cell size of the cells at the surface, input units
 std::optional<Vec3> feature_target(const FeatureSurface& surface, const FeatureLabel& label, const Vec3& at,
                                    double cell);
 
 /// Moves points to their targets that hold each other back: each group of them goes to its targets at once,
 /// and the points around give way, within their patch or along their crease if they are on the boundary,
-/// until all tets are positive (untangle()). Groups for which that fails,
-/// or of more than CutTuning::JointFitting::max_group points, stay. Serial. \param waiting points
-/// and the steps to their targets \param cell size of the cells at the surface, input units
+/// until all tets are positive (untangle()). Groups for which that fails, or of more than
+/// CutTuning::JointFitting::max_group points, stay. Serial.
+/// \param waiting points and the steps to their targets
+/// \param cell size of the cells at the surface, input units
 void move_jointly(TetMesh& mesh, const FeatureSurface& surface, const CreaseLabels& labels,
                   const std::vector<PointMove>& waiting, double cell);
 
