@@ -75,6 +75,27 @@ std::vector<std::uint8_t> ends_of_lines(const LabelledComplex& complex,
   return uses;
 }
 
+/// Calls `visit(edge)` with the edges of a line that begin within `reach` of one of its points, along it.
+template <class Visit>
+void walk_along_line(Index from, double reach, const std::vector<TouchingEdge>& edges,
+                     const std::vector<std::vector<Index>>& edges_at, const std::vector<Vec3>& points,
+                     const Visit& visit) {
+  std::vector<std::pair<Index, double>> waiting{{from, 0}};
+  std::vector<Index> visited;
+  while (!waiting.empty()) {
+    const auto [p, distance] = waiting.back();
+    waiting.pop_back();
+    for (const Index e : edges_at[p]) {
+      if (std::find(visited.begin(), visited.end(), e) != visited.end()) continue;
+      visited.push_back(e);
+      visit(e);
+      const auto& [a, b] = edges[e].ends;
+      const double beyond = distance + (points[b] - points[a]).norm();
+      if (beyond < reach) waiting.emplace_back(p == a ? b : a, beyond);
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<TouchingEdge> touching_edges(const LabelledComplex& complex) {
@@ -126,16 +147,27 @@ ContactZone::ContactZone(const LabelledComplex& complex, const GridFrame& voxels
 
 void ContactZone::add_touching_edges(const LabelledComplex& complex, const std::vector<Vec3>& points) {
   std::vector<TouchingEdge> edges = touching_edges(complex);
+  if (edges.empty()) return;
   const std::vector<std::uint8_t> is_end = ends_of_lines(complex, edges);
-  std::vector<ProjectionTree::Item> items;
-  for (TouchingEdge& edge : edges) {
-    const auto& [a, b] = edge.ends;
-    if (touching_regions_.empty() || touching_regions_.back() != edge.regions)
-      touching_regions_.push_back(std::move(edge.regions));
-    items.push_back(
-        {{a, b, b}, {static_cast<std::uint32_t>(touching_regions_.size() - 1), is_end[a], is_end[b]}});
+  std::vector<std::vector<Index>> edges_at(points.size());
+  for (Index e = 0; e < edges.size(); ++e)
+    for (const Index p : edges[e].ends) edges_at[p].push_back(e);
+  near_ends_.resize(edges.size());
+  for (Index p = 0; p < points.size(); ++p) {
+    if (!is_end[p]) continue;
+    const auto& [a, b] = edges[edges_at[p][0]].ends;
+    walk_along_line(p, Zone::reach, edges, edges_at, points,
+                    [&](Index e) { near_ends_[e].push_back(static_cast<Index>(ends_.size())); });
+    ends_.push_back({points[p], (points[p == a ? b : a] - points[p]).normalized()});
   }
-  if (!items.empty()) touching_ = ProjectionTree(points, std::move(items));
+  std::vector<ProjectionTree::Item> items;
+  for (Index e = 0; e < edges.size(); ++e) {
+    const auto& [a, b] = edges[e].ends;
+    if (touching_regions_.empty() || touching_regions_.back() != edges[e].regions)
+      touching_regions_.push_back(std::move(edges[e].regions));
+    items.push_back({{a, b, b}, {static_cast<std::uint32_t>(touching_regions_.size() - 1), e, 0}});
+  }
+  touching_ = ProjectionTree(points, std::move(items));
 }
 
 std::optional<ContactZone::NearLine> ContactZone::near_line(const Vec3& point, RegionIndex first,
@@ -150,22 +182,19 @@ std::optional<ContactZone::NearLine> ContactZone::near_line(const Vec3& point, R
   });
   if (!hit) return {};
   NearLine line{point - hit->point, HUGE_VAL, Vec3::Zero()};
-  const ProjectionTree::Item& item = touching_.items()[hit->item];
-  for (const int k : {0, 1}) {
-    if (!item.kind[k == 0 ? 1U : 2U]) continue;
-    const Vec3 &end = touching_.corner(item, k), inwards = (touching_.corner(item, 1 - k) - end).normalized();
-    if (const double from_end = (point - end).dot(inwards); from_end < line.from_end) {
+  for (const Index e : near_ends_[touching_.items()[hit->item].kind[1]])
+    if (const double from_end = (point - ends_[e].point).dot(ends_[e].inwards); from_end < line.from_end) {
       line.from_end = from_end;
-      line.inwards = inwards;
+      line.inwards = ends_[e].inwards;
     }
-  }
   return line;
 }
 
 /// Makes the outside give way between two bodies that touch in a line, if it does not do so by more already.
 /// It counts as thick as the chord of the wedge between them is long at the point's distance from the line,
-/// and the line's ends bound it: so its rim is a circle around the line, and it meets all surfaces at about
-/// right angles. Where it ran out at smaller ones, edges of the lattice could pass through the thin rim.
+/// and the line's ends bound it. In a wedge of up to a right angle between planes the rim is therefore a
+/// circle around the line and meets the planes at right angles; in others it does so about. At sharp angles
+/// the rim would be so thin that edges of the lattice pass through it.
 void ContactZone::give_way(const NearLine& line, Narrow& narrow) {
   const double distance = line.away.norm();
   const double opening = std::sqrt(2 * std::max(0.0, 1 + narrow.cosine));

@@ -50,7 +50,9 @@ class ContactZone {
     double cosine;       ///< between the gradients of both distances
     /// By how much the region gives way: 0 where it is thick enough, and growing continuously.
     double deficit;
-    Vec3 slope;  ///< gradient of the deficit
+    /// Gradient of the deficit. Changes of the angle between both sides are left out: beside plane faces
+    /// there are none.
+    Vec3 slope;
   };
 
   ContactZone(const LabelledComplex& complex, const GridFrame& voxels);
@@ -86,6 +88,11 @@ class ContactZone {
     double from_end;  ///< distance from the plane across the line's end; infinite if the line goes on
     Vec3 inwards;     ///< unit, from the end
   };
+  /// Where a line in which bodies touch ends.
+  struct EndOfLine {
+    Vec3 point;
+    Vec3 inwards;  ///< unit, along the line
+  };
 
   void add_junctions(const LabelledComplex& complex, const std::vector<Vec3>& points,
                      const std::array<int, 3>& cells);
@@ -103,9 +110,10 @@ class ContactZone {
 
   BoxTree tree_;
   std::vector<std::vector<RegionIndex>> touching_regions_;
-  ProjectionTree touching_;  ///< touching_edges(); kinds: index into touching_regions_, and which points are
-                             ///< ends of lines
-  std::vector<Face> faces_;  ///< in the order of the tree
+  ProjectionTree touching_;  ///< touching_edges(); kinds: indices into touching_regions_ and near_ends_
+  std::vector<EndOfLine> ends_;
+  std::vector<std::vector<Index>> near_ends_;  ///< by touching edge: ends within reach along its line
+  std::vector<Face> faces_;                    ///< in the order of the tree
   std::unordered_map<std::uint64_t, Mask> leaves_;
 };
 

@@ -94,9 +94,9 @@ void CreaseLabels::split_chords(const std::vector<SheetEdge>& chords) {
   }
 }
 
-/// Splits the edges inside a patch that join two points of one of its creases and enclose a point of the
-/// patch between them and the crease. Where the crease is straight the point could not leave it, and would
-/// hold back those around it.
+/// Splits the edges inside a patch between points on its creases that two patches have in common, if they cut
+/// off a point of the patch all of whose other neighbours are on creases, too, from another one. Where the
+/// crease is straight such a point could not leave it, and would hold back those around it.
 void CreaseLabels::split_chords_of_creases() {
   if (!surface_.has_junctions()) return;
   struct Side {

@@ -322,7 +322,8 @@ class CurveTubes {
     return own;
   }
 
-  /// Chooses the next radius around poor faces; after the last, the mesh stays as it is near these.
+  /// Chooses the next radius around poor faces; after the last, the mesh stays as it is near these. Each
+  /// vertex has as many tries as there are radii, so that this ends.
   /// \return false if nothing changes
   bool try_others(const std::vector<Index>& poor) {
     for (const auto& [p, position] : moved_from_) mesh_.points[p] = position;

@@ -36,8 +36,9 @@ class NearTets {
   }
   /// The near tet beyond a face, or far or none.
   Index neighbour(Index near, Index k) const { return neighbours_[near][k]; }
-  /// The near tets at a point of one of them, ascending.
+  /// The near tets at a point, ascending. \pre has(p)
   const std::vector<Index>& at(Index p) const { return at_[number_[p]]; }
+  /// Whether some near tet has this point.
   bool has(Index p) const { return number_[p] != no_index; }
   /// \pre has(p)
   bool is_on_boundary(Index p) const { return is_on_boundary_[number_[p]] != 0; }

@@ -39,8 +39,9 @@ class TubeSurface {
   const std::vector<Face>& faces() const { return faces_; }
   /// Points of the faces, ascending.
   const std::vector<Index>& points() const { return points_; }
+  /// Indices of the faces at one of their points.
   const std::vector<Index>& faces_at(Index p) const { return faces_at_[p]; }
-  /// The vertex to which a point of the faces goes.
+  /// The vertex to which one of the faces' points goes.
   Index image(Index p) const { return image_[p]; }
   /// Points of the mesh, followed by the vertices of the chains.
   const Vec3& position(Index p) const {

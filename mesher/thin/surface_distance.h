@@ -16,8 +16,8 @@ namespace tetwright {
 struct SurfacePlace {
   Vec3 point = Vec3::Zero();
   Vec3 normal = Vec3::Zero();  ///< outward unit normal of the triangle
-  /// On which side of the surface the point is that it is closest to: 1 outside, -1 inside, 0 if the triangle
-  /// alone does not tell.
+  /// Side of the surface on which the queried point lies: 1 outside, -1 inside, 0 if the triangle alone does
+  /// not tell. Set by SurfaceDistance::nearest() only.
   int side = 0;
 };
 
@@ -28,8 +28,9 @@ struct SurfacePlace {
 /// concurrently. Built in O(n log n); about 200 bytes per triangle.
 class SurfaceDistance {
  public:
-  /// Coordinates and results may be in any common unit.
-  /// \param closed number of triangles of closed components, which come first
+  /// Coordinates and results are in voxels.
+  /// \param closed number of triangles of closed components, which come first; none lies within another one
+  ///   that is oriented alike and touches it
   /// \param caps caps of the surface's holes, which count for distances only
   /// \param intersects_itself parts of the surface lie inside others and are not walls
   SurfaceDistance(std::span<const Vec3> points, std::span<const Triangle> triangles, std::size_t closed,

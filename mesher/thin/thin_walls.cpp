@@ -49,7 +49,8 @@ double ThinWalls::parallel_thickness(const Vec3& point, int depth) const {
 double ThinWalls::thickness_around(SurfacePlace& place, SurfaceDistance::Side side, double at_most) const {
   const double sign = side == SurfaceDistance::Side::gap ? 1 : -1;
   SurfacePlace at = place;
-  // The ball of that thickness is empty but for rounding: there is no other wall, nor another face to go to.
+  // The ball of that thickness is empty within the tolerance of thickness(): there is neither another wall
+  // nor another face to go to.
   if (surface_->is_ball_empty(at.point + sign * 0.5 * at_most * at.normal,
                               0.5 * at_most * (1 - DistanceTuning::Triangles::min_shrink)))
     return at_most;

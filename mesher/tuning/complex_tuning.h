@@ -93,6 +93,8 @@ struct ComplexTuning {
 
   /// Where regions are decided by the triangles.
   struct Zone {
+    /// Triangles in a leaf of the tree. Among equally near triangles some results depend on the order of the
+    /// tree.
     static constexpr std::size_t leaf_size = 4;
     /// Distance from contacts and junctions, voxels: the band of the level sets, within which distances are
     /// interpolated.

@@ -146,7 +146,8 @@ struct CutTuning {
     static constexpr double max_growth = 4;
     /// Rounds of growth, and passes over the points of a tube in each of them.
     static constexpr int max_rounds = 30, max_passes = 20;
-    /// Steps along a chain within which the radius changes where a tube fails.
+    /// Steps along a chain within which the radius changes where a tube fails: the tets of a vertex reach to
+    /// those next to it, and the radius may not jump there.
     static constexpr int steps_of_change = 2;
     /// Max number of points of poor faces that make room together: larger groups need another tube.
     static constexpr std::size_t max_group = 60;

@@ -45,8 +45,9 @@ struct DistanceTuning {
     /// Cosine between the surfaces' gradients below which the region between them is a sheet. Otherwise it is
     /// a wedge, which is thin at its edge in cells of any size.
     static constexpr double max_cosine = -0.95;
-    /// Cosine above which a wedge between materials needs no smaller cells at its edge: its angle is larger
-    /// than 37 degrees.
+    /// Cosine above which a wedge between materials gets no smaller cells at its edge: its angle is larger
+    /// than 37 degrees. Corners and interfaces of eight sectors are right without them, in less than half of
+    /// the time.
     static constexpr double max_wedge_cosine = -0.8;
     /// Thinner sheets (voxels) are gaps between two faces meant to coincide.
     static constexpr double min_thickness = 0.1;
@@ -95,9 +96,9 @@ struct DistanceTuning {
     static constexpr double tie = 1e-9;
     /// Distance in front of and behind a surface point at which its sides are tested, voxels.
     static constexpr double side_distance = 1e-4;
-    /// A triangle tells on which side of the surface a point is if it is at least this high, the point this
-    /// far away (voxels), and the squared share of its height over the triangle's plane in the distance at
-    /// least the last: rounding of coordinates changes all three far less.
+    /// A triangle tells on which side of the surface a point is if it is at least this high, the point is at
+    /// least this far away (voxels), and the squared sine of the angle between the triangle's plane and the
+    /// direction to the point is at least the last: rounding of coordinates changes all three far less.
     static constexpr double min_height = 1e-6, min_side_distance = 1e-3, min_side_share = 1e-6;
   };
 

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "tests/common/features/parts.h"
 #include "tests/mesher/test_surfaces.h"
@@ -47,10 +50,34 @@ TEST(ContactZone, PointsBesideAContactAreOnTheirSide) {
   EXPECT_NEAR(zone.nearest({4.5, 3.5, 5}).distance.value, std::sqrt(0.5), 1e-9);
 }
 
+/// Divides the triangles of a surface at the line x = y = 5 by points at these heights, ascending.
+void divide_at_line(TriangleMesh& surface, const std::vector<double>& heights) {
+  const auto is_on_line = [&](Index p) { return surface.points[p].x() == 5 && surface.points[p].y() == 5; };
+  std::vector<Index> added;
+  for (const double z : heights) {
+    added.push_back(static_cast<Index>(surface.points.size()));
+    surface.points.emplace_back(5, 5, z);
+  }
+  std::vector<Triangle> triangles;
+  for (Triangle t : surface.triangles) {
+    for (int k = 0; k < 2 && !(is_on_line(t[0]) && is_on_line(t[1])); ++k)
+      std::rotate(t.begin(), t.begin() + 1, t.end());
+    std::vector<Index> chain{t[0]};
+    if (is_on_line(t[0]) && is_on_line(t[1])) chain.insert(chain.end(), added.begin(), added.end());
+    if (surface.points[t[0]].z() > surface.points[t[1]].z()) std::reverse(chain.begin() + 1, chain.end());
+    chain.push_back(t[1]);
+    for (std::size_t i = 1; i < chain.size(); ++i) triangles.push_back({chain[i - 1], chain[i], t[2]});
+  }
+  surface.triangles = std::move(triangles);
+}
+
 /// Two boxes that touch along the line x = y = 5, z from 2 to 8.
-MesherInput boxes_at_line() {
-  return make_mesher_input({{"left", 1, make_box({2, 2, 2}, {5, 5, 8}), "left.off"},
-                            {"right", 2, make_box({5, 5, 2}, {8, 8, 8}), "right.off"}});
+/// \param heights of further points on that line
+MesherInput boxes_at_line(const std::vector<double>& heights = {}) {
+  TriangleMesh left = make_box({2, 2, 2}, {5, 5, 8}), right = make_box({5, 5, 2}, {8, 8, 8});
+  for (TriangleMesh* box : {&left, &right}) divide_at_line(*box, heights);
+  return make_mesher_input(
+      {{"left", 1, std::move(left), "left.off"}, {"right", 2, std::move(right), "right.off"}});
 }
 
 double deficit_at(const ContactZone& zone, const Vec3& point) {
@@ -85,6 +112,17 @@ TEST(ContactZone, TheOutsideDoesNotGiveWayBeyondTheEndOfALine) {
     EXPECT_EQ(deficit_at(zone, beside_line(0.5, degrees, 1.99)), 0) << degrees;
     EXPECT_EQ(deficit_at(zone, beside_line(0.5, degrees, 8.01)), 0) << degrees;
   }
+}
+
+TEST(ContactZone, EndsOfALineDoNotDependOnItsDivision) {
+  const MesherInput whole = boxes_at_line();
+  const MesherInput divided = boxes_at_line({2.1, 2.2, 2.3, 2.4, 2.5, 2.7, 3, 4, 7.9});
+  const ContactZone zone(*whole.complex, frame()), other(*divided.complex, frame());
+  for (const double z : {2.05, 2.15, 2.25, 2.45, 2.9, 5.0, 7.6, 7.85, 7.95})
+    for (const double degrees : {10.0, 45.0})
+      EXPECT_NEAR(deficit_at(other, beside_line(0.5, degrees, z)),
+                  deficit_at(zone, beside_line(0.5, degrees, z)), 1e-9)
+          << z << " " << degrees;
 }
 
 TEST(ContactZone, SlopesAreGradientsOfDeficits) {

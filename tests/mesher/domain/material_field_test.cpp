@@ -4,6 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <utility>
 
 #include "common/random.h"
 #include "tests/mesher/fields.h"
@@ -143,6 +147,32 @@ TEST(MaterialField, SheetsAndTheirThickness) {
   EXPECT_EQ(sheet->region, 1);
   EXPECT_NEAR(sheet->thickness, 2, 0.05);  // lattice units
   EXPECT_FALSE(sheets.thinnest_sheet(field->frame().to_grid({0, 0, 0.5}), 0.5));
+}
+
+/// The thinnest sheet next to the edge of a wedge of this angle on a block, below another one or not.
+std::optional<FieldSheet> sheet_in_wedge(double degrees, bool covered) {
+  const double height = std::tan(degrees * std::numbers::pi / 180);
+  TriangleMesh wedge;
+  for (const double z : {0.5, 2.5})
+    for (const auto& [x, y] : {std::pair{0.5, 0.0}, {1.5, 0.0}, {1.5, height}})
+      wedge.points.emplace_back(x, y, z);
+  wedge.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+  std::vector<TriangleMesh> bodies{make_box({0, -2, 0}, {3, 0, 3})};
+  if (covered) bodies.push_back(make_box({0, 0, 0}, {3, 2, 3}));
+  bodies.push_back(wedge);
+  const auto field = make_field(bodies, 0.1);
+  const std::unique_ptr<FieldSampler> sampler = field->sampler();
+  return sampler->sheets()->thinnest_sheet(field->frame().to_grid({0.55, 0.025 * height, 1.5}), 0.5);
+}
+
+TEST(MaterialField, WedgesHaveSmallCellsWhereTheyAreSharpOrBesideTheOutside) {
+  EXPECT_FALSE(sheet_in_wedge(45, true));
+  for (const auto& [degrees, covered] : {std::pair{30.0, true}, {45.0, false}}) {
+    const auto sheet = sheet_in_wedge(degrees, covered);
+    ASSERT_TRUE(sheet) << degrees;
+    EXPECT_EQ(sheet->region, covered ? 3 : 2);
+    EXPECT_LT(sheet->thickness, 1) << degrees;  // lattice units
+  }
 }
 
 TEST(MaterialField, TwoNearest) {
