@@ -59,20 +59,30 @@ double touching_thickness(double distance) {
   return Zone::touching_thickness * (1 - distance * distance / (Zone::reach * Zone::reach));
 }
 
-/// True for points of a complex at which a line in which bodies touch ends, and no contact goes on.
+/// True for points of a complex at which a line in which bodies touch ends, and no contact goes on: none but
+/// between bodies that have a common face at the line.
 std::vector<std::uint8_t> ends_of_lines(const LabelledComplex& complex,
-                                        const std::vector<TouchingEdge>& edges) {
-  std::vector<std::uint8_t> uses(complex.points.size(), 0);
-  const auto use = [&](Index p, int count) {
-    uses[p] = static_cast<std::uint8_t>(std::min(2, uses[p] + count));
-  };
-  for (const TouchingEdge& e : edges)
-    for (const Index p : e.ends) use(p, 1);
-  for (Index f = 0; f < complex.faces.size(); ++f)
-    if (complex.is_contact(f))
-      for (const Index p : complex.faces[f].ids) use(p, 2);
-  for (std::uint8_t& u : uses) u = u == 1;
-  return uses;
+                                        const std::vector<TouchingEdge>& edges,
+                                        const std::vector<std::vector<Index>>& edges_at) {
+  std::vector<std::uint8_t> is_end(complex.points.size(), 0);
+  for (Index p = 0; p < is_end.size(); ++p) is_end[p] = edges_at[p].size() == 1;
+  for (Index f = 0; f < complex.faces.size(); ++f) {
+    if (!complex.is_contact(f)) continue;
+    const std::pair<RegionIndex, RegionIndex> pair =
+        std::minmax(complex.faces[f].behind, complex.faces[f].front);
+    for (const Index p : complex.faces[f].ids)
+      if (is_end[p] &&
+          !std::binary_search(edges[edges_at[p][0]].joined.begin(), edges[edges_at[p][0]].joined.end(), pair))
+        is_end[p] = 0;
+  }
+  return is_end;
+}
+
+/// Sorts a list and removes what is repeated.
+template <class Item>
+void make_unique(std::vector<Item>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
 /// Calls `visit(edge)` with the edges of a line that begin within `reach` of one of its points, along it.
@@ -104,17 +114,21 @@ std::vector<TouchingEdge> touching_edges(const LabelledComplex& complex) {
   const std::vector<EdgeUse> uses = edge_uses(triangles, {});
   std::vector<TouchingEdge> edges;
   for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
-    std::vector<RegionIndex> regions;
-    bool have_common_face = false;
+    TouchingEdge edge{ends_of(uses[i].key), {}};
+    std::size_t at_outside = 0;  // two faces for each sector
     for (; j < uses.size() && uses[j].key == uses[i].key; ++j) {
       const LabelledComplex::Face& f = complex.faces[uses[j].triangle];
-      have_common_face |= f.behind != outside_region && f.front != outside_region;
-      regions.push_back(f.behind == outside_region ? f.front : f.behind);
+      const auto& [low, high] = std::minmax(f.behind, f.front);
+      edge.regions.push_back(high);
+      if (low == outside_region)
+        ++at_outside;
+      else
+        edge.joined.emplace_back(low, high), edge.regions.push_back(low);
     }
-    if (have_common_face || regions.size() <= 2) continue;
-    std::sort(regions.begin(), regions.end());
-    regions.erase(std::unique(regions.begin(), regions.end()), regions.end());
-    if (regions.size() > 1) edges.push_back({ends_of(uses[i].key), std::move(regions)});
+    if (at_outside <= 2) continue;
+    make_unique(edge.regions);
+    make_unique(edge.joined);
+    if (edge.regions.size() > 1) edges.push_back(std::move(edge));
   }
   return edges;
 }
@@ -148,10 +162,10 @@ ContactZone::ContactZone(const LabelledComplex& complex, const GridFrame& voxels
 void ContactZone::add_touching_edges(const LabelledComplex& complex, const std::vector<Vec3>& points) {
   std::vector<TouchingEdge> edges = touching_edges(complex);
   if (edges.empty()) return;
-  const std::vector<std::uint8_t> is_end = ends_of_lines(complex, edges);
   std::vector<std::vector<Index>> edges_at(points.size());
   for (Index e = 0; e < edges.size(); ++e)
     for (const Index p : edges[e].ends) edges_at[p].push_back(e);
+  const std::vector<std::uint8_t> is_end = ends_of_lines(complex, edges, edges_at);
   near_ends_.resize(edges.size());
   for (Index p = 0; p < points.size(); ++p) {
     if (!is_end[p]) continue;

@@ -17,13 +17,15 @@
 
 namespace tetwright {
 
-/// An edge of a complex in which bodies touch: the outside is on both sides of it.
+/// An edge of a complex in which bodies touch: the outside is in two or more sectors around it.
 struct TouchingEdge {
   std::array<Index, 2> ends;         ///< ascending
   std::vector<RegionIndex> regions;  ///< of the bodies, ascending; two or more
+  /// Pairs of them that have a common face at the edge, ascending.
+  std::vector<std::pair<RegionIndex, RegionIndex>> joined = {};
 };
 
-/// The edges in which bodies touch without a common face at the edge, ascending.
+/// The edges in which bodies touch, ascending.
 std::vector<TouchingEdge> touching_edges(const LabelledComplex& complex);
 
 /// Regions and distances around the contacts and junctions of a complex, computed from its triangles: a point

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/features/edge_uses.h"
+#include "mesher/complex/contact_zone.h"
 #include "mesher/tuning/cut_tuning.h"
 
 namespace tetwright {
@@ -43,6 +44,8 @@ void StripFinder::find_curves(const LabelledComplex& complex) {
   for (const LabelledComplex::Face& f : complex.faces) triangles.push_back(f.ids);
   for (const LabelledComplex::SheetFace& f : complex.sheets) triangles.push_back(f.ids);
   const std::vector<EdgeUse> uses = edge_uses(triangles, {});
+  std::vector<std::array<Index, 2>> touching;
+  for (const TouchingEdge& edge : touching_edges(complex)) touching.push_back(edge.ends);
   std::map<Index, std::pair<std::size_t, Sheets>> at_points;  // the most of any edge, and all
   for (std::size_t i = 0, j = 0; i < uses.size(); i = j) {
     std::set<std::pair<RegionIndex, RegionIndex>> pairs;
@@ -55,9 +58,11 @@ void StripFinder::find_curves(const LabelledComplex& complex) {
       const LabelledComplex::Face& f = complex.faces[uses[j].triangle];
       pairs.insert(std::minmax(f.behind, f.front));
     }
+    // Where bodies touch in a line, the outside around it is filled.
+    const bool is_touching = std::binary_search(touching.begin(), touching.end(), ends_of(uses[i].key));
     // Where an inner sheet crosses a contact, both of the contact's faces count.
-    const bool branches =
-        pairs.size() + inner >= Strips::min_sheets || (inner >= 2 && j - i >= Strips::min_sheets);
+    const bool branches = !is_touching && (pairs.size() + inner >= Strips::min_sheets ||
+                                           (inner >= 2 && j - i >= Strips::min_sheets));
     if (!branches && pairs.size() < 2) continue;
     Sheets sheets;
     for (const auto& [a, b] : pairs) sheets.push_back(*surface_.sheet_between(a, b));

@@ -106,6 +106,28 @@ TetMesh mesh_of_touching_cubes(const Eigen::AngleAxisd& turn, int resolution) {
                  resolution);
 }
 
+/// A prism along z with an edge on the axis and the opposite face at x = -1.
+TriangleMesh wedge(double half_width, double low, double high) {
+  TriangleMesh mesh;
+  for (const double z : {low, high})
+    for (const double y : {0.0, half_width, -half_width}) mesh.points.emplace_back(y == 0 ? 0 : -1, y, z);
+  mesh.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+  return mesh;
+}
+
+TEST(NarrowParts, ABodyThatTouchesTheEdgeOfACommonFaceIsJoined) {
+  for (const auto& [low, high] : {std::pair{0.0, 1.0}, {0.2, 0.7}}) {
+    const TetMesh mesh =
+        mesh_of({make_box({0, 0, 0}, {1, 1, 1}), make_box({0, -1, 0}, {1, 0, 1}), wedge(0.4, low, high)}, 24);
+    EXPECT_TRUE(check_mesh(mesh).empty()) << low;
+    for (const MaterialPair& pair : {MaterialPair{1, 2}, {1, 3}, {2, 3}})
+      EXPECT_EQ(euler_number(mesh, [&](const InterfaceTriangle& t) { return t.other && t.pair() == pair; }),
+                1)
+          << pair.first << " " << pair.second.value_or(outside_tag);
+    EXPECT_EQ(euler_number(mesh, [](const InterfaceTriangle& t) { return !t.other; }), 2) << low;
+  }
+}
+
 TEST(NarrowParts, BodiesThatTouchInALineAreJoinedInOnePiece) {
   const auto turned = [](double angle) { return Eigen::AngleAxisd(angle, common_turn.axis()); };
   const Eigen::AngleAxisd other_turn(2, Vec3(1, 5, 1).normalized());

@@ -80,6 +80,15 @@ MesherInput boxes_at_line(const std::vector<double>& heights = {}) {
       {{"left", 1, std::move(left), "left.off"}, {"right", 2, std::move(right), "right.off"}});
 }
 
+/// A prism along the line x = y = 5, z from 3 to 6, that widens towards smaller x.
+TriangleMesh prism_at_line() {
+  TriangleMesh mesh;
+  for (const double z : {3.0, 6.0})
+    for (const double y : {0.0, 1.2, -1.2}) mesh.points.emplace_back(y == 0 ? 5 : 2, 5 + y, z);
+  mesh.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+  return mesh;
+}
+
 double deficit_at(const ContactZone& zone, const Vec3& point) {
   const auto narrow = zone.narrow(point, zone.nearest(point));
   return narrow ? narrow->deficit : 0;
@@ -123,6 +132,23 @@ TEST(ContactZone, EndsOfALineDoNotDependOnItsDivision) {
       EXPECT_NEAR(deficit_at(other, beside_line(0.5, degrees, z)),
                   deficit_at(zone, beside_line(0.5, degrees, z)), 1e-9)
           << z << " " << degrees;
+}
+
+TEST(ContactZone, ABodyThatTouchesTheEdgeOfACommonFaceTouchesInALine) {
+  // The prism is on the other side of the line, and shorter.
+  const MesherInput input = make_mesher_input({{"left", 1, make_box({5, 5, 2}, {8, 8, 8}), "left.off"},
+                                               {"right", 2, make_box({5, 2, 2}, {8, 5, 8}), "right.off"},
+                                               {"prism", 3, prism_at_line(), "prism.off"}});
+  const std::vector<TouchingEdge> edges = touching_edges(*input.complex);
+  ASSERT_FALSE(edges.empty());
+  for (const TouchingEdge& edge : edges) {
+    EXPECT_EQ(edge.regions, (std::vector<RegionIndex>{1, 2, 3}));
+    EXPECT_EQ(edge.joined, (std::vector<std::pair<RegionIndex, RegionIndex>>{{1, 2}}));
+  }
+  const ContactZone zone(*input.complex, frame());
+  const auto above = [](double z) { return Vec3(4.9, 5.3, z); };
+  EXPECT_GT(deficit_at(zone, above(4)), 0);
+  EXPECT_EQ(deficit_at(zone, above(6.01)), 0);
 }
 
 TEST(ContactZone, SlopesAreGradientsOfDeficits) {
