@@ -58,14 +58,17 @@ std::string gap_text(const MesherInput& input) {
 /// Throws InputError if a surface that vanished from the mesh is flat or not closed.
 void validate_encloses(const MesherInput& input, const MesherInput::Body& body) {
   if (is_flat(body.surface))
-    throw InputError(
-        body.file, 0,
-        "the surface lies in a plane and encloses nothing; give the surface of a solid" + gap_text(input));
+    throw InputError(body.file, 0,
+                     "the surface lies in a plane and encloses nothing; give the surface of a solid, or use "
+                     "--thicken D for "
+                     "a plate" +
+                         gap_text(input));
   if (body.surface.closed < body.surface.triangles.size())
     throw InputError(
         body.file, 0,
         "the surface is not closed and encloses nothing that cells of this size can resolve; close "
-        "its holes, or use a higher resolution if it is closed but for small ones" +
+        "its holes, or use a higher resolution if it is closed but for small ones. --base makes a block of a "
+        "height field, --thicken a shell of a sheet" +
             gap_text(input));
 }
 

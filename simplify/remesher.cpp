@@ -92,7 +92,7 @@ struct Remesher::Impl {
     parallel_for(0, mesh.tet_slots(), Grains::slots, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) rate(static_cast<Index>(t));
     });
-    grid.build(mesh, 0);
+    grid.build(mesh);
     grid.reserve_twice();
     places.build(mesh);
   }

@@ -17,7 +17,7 @@ Workpiece::Workpiece(TetMesh input, std::size_t target_tets)
   // no shape were allowed to get worse.
   rules.acceptance.worse_probability = 1;
   rules.acceptance.worse_floor = 0.1f;
-  grid.build(mesh, rules.objective.quality.ideal_edge / 2);
+  grid.build(mesh);
   rate_all();
 }
 

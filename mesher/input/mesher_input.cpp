@@ -11,6 +11,7 @@
 #include "common/message_text.h"
 #include "mesher/input/body_builder.h"
 #include "mesher/input/body_contacts.h"
+#include "mesher/input/open_surfaces.h"
 #include "mesher/input/patch_joining.h"
 #include "mesher/input/qualified_names.h"
 #include "mesher/input/self_crossings.h"
@@ -150,6 +151,7 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
                               Progress* progress, const SheetOptions& sheets, const CapOptions& caps) {
   if (surfaces.empty()) throw UsageError("there is no surface to mesh");
   MesherInput input;
+  close_open_surfaces(surfaces, caps.open, input.findings);
   std::map<std::size_t, WalledSurface> joined = join_patches(surfaces, contact, input.findings, progress);
   name_groups(surfaces, input.findings);
   input.groups = measure_groups(surfaces);

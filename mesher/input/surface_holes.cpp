@@ -15,6 +15,7 @@
 #include "common/geometry/projection_tree.h"
 #include "common/message_text.h"
 #include "mesher/input/flat_caps.h"
+#include "mesher/input/open_surfaces.h"
 #include "mesher/input/surface_components.h"
 #include "mesher/tuning/input_tuning.h"
 #include "tetwright/error.h"
@@ -140,6 +141,7 @@ std::vector<SurfaceHole> close_flat_holes(CleanedSurface& surface, std::vector<S
       component.push_back(c);
     }
   const std::vector<HoleRim> rims = find_rims(surface.points, triangles);
+  if (!options.open.accept_sheets) require_enclosing(surface.points, triangles, component, rims, file);
   std::vector<FlatCap> caps;
   if (options.close_flat) caps = find_flat_caps(surface.points, triangles, rims, component);
   double area = 0;

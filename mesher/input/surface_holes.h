@@ -24,6 +24,8 @@ bool has_free_edges(const std::vector<Triangle>& triangles);
 /// A hole stays open if its cap would intersect the surface or another cap or enclose almost no volume, or
 /// if its area is a negligible part of the surface. A surface without free edges is not changed.
 ///
+/// \throws InputError as require_enclosing() does, see OpenSurfaceOptions
+///
 /// Cost: O(n log n) for surfaces with holes. The result does not depend on the number of threads.
 /// \param groups of the surface; groups without a name are appended for sharp caps
 /// \return largest first; holes of equal size by their lowest point

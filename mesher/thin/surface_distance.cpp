@@ -36,14 +36,14 @@ SurfaceDistance::SurfaceDistance(std::span<const Vec3> points, std::span<const T
       BoxTree(count, DistanceTuning::Triangles::leaf_size, [&](std::size_t i) { return boxes[order[i]]; });
   triangles_.resize(count);
   normals_.resize(count);
-  is_closed_.resize(count);
+  parts_.resize(count);
   parallel_for(0, count, DistanceGrains::elements, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto& [a, b, c] = triangles_[i] = corners[order[i]];
       const Vec3 normal = (b - a).cross(c - a);
       const double length = normal.norm();
       normals_[i] = length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero());
-      is_closed_[i] = order[i] < closed;
+      parts_[i] = order[i] < closed ? Part::closed : order[i] < surface ? Part::open : Part::cap;
     }
   });
   if (closed < surface) open_.emplace(points, triangles.subspan(closed));
@@ -118,13 +118,13 @@ std::optional<SurfacePlace> SurfaceDistance::nearest(const Vec3& point, double a
   int side = 0;
   if (is_certain && is_in_front != is_behind && squared_distance > min_distance * min_distance)
     side = is_in_front ? 1 : -1;
-  return SurfacePlace{place, normals_[nearest], side};
+  return SurfacePlace{place, normals_[nearest], side, parts_[nearest] == Part::cap};
 }
 
 bool SurfaceDistance::is_ball_empty(const Vec3& center, double radius) const {
   const double limit = radius * radius;
   return tree_.nearest(center, limit, tree_.all(), [&](std::size_t t, double best) {
-    if (normals_[t].isZero(0)) return best;
+    if (normals_[t].isZero(0) || parts_[t] == Part::cap) return best;
     const auto& [a, b, c] = triangles_[t];
     if (const double height = normals_[t].dot(center - a); height * height >= limit) return best;
     // One is enough: nothing is nearer than a negative distance.
@@ -140,7 +140,7 @@ bool SurfaceDistance::inside(const Vec3& point) const {
                point.y() <= box.high.y() && box.low.z() <= point.z();
       },
       [&](std::size_t t) {
-        if (!is_closed_[t]) return;
+        if (parts_[t] != Part::closed) return;
         const auto& [a, b, c] = triangles_[t];
         const int crossing = vertical_crossing(a, b, c, point);
         if (crossing != 0 && at_or_above(a, b, c, crossing, point)) winding += crossing;
@@ -157,7 +157,7 @@ std::optional<SurfacePlace> SurfaceDistance::nearest_facing(const Vec3& point, c
   const double limit = below * below;
   SurfacePlace wall;
   const double found = tree_.nearest(point, limit, tree_.all(), [&](std::size_t t, double best) {
-    if (!(normals_[t].dot(normal) < -facing)) return best;
+    if (!(normals_[t].dot(normal) < -facing) || parts_[t] == Part::cap) return best;
     const auto& [a, b, c] = triangles_[t];
     if (in_front && (point - a).dot(normals_[t]) < 0) return best;
     const Vec3 p = closest_point(point, a, b, c);
@@ -180,6 +180,7 @@ bool SurfaceDistance::has_inside_behind(const SurfacePlace& place) const {
 }
 
 double SurfaceDistance::thickness(const SurfacePlace& place, Side side, double facing, double at_most) const {
+  if (place.on_cap) return at_most;
   const Vec3 direction = side == Side::gap ? place.normal : Vec3(-place.normal);
   double radius = 0.5 * at_most;
   std::optional<SurfacePlace> wall;

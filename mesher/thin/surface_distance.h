@@ -19,6 +19,7 @@ struct SurfacePlace {
   /// Side of the surface on which the queried point lies: 1 outside, -1 inside, 0 if the triangle alone does
   /// not tell. Set by SurfaceDistance::nearest() only.
   int side = 0;
+  bool on_cap = false;  ///< of a hole
 };
 
 /// Exact distances from the triangles of a surface, its exact inside, and the distance from one wall to the
@@ -31,7 +32,7 @@ class SurfaceDistance {
   /// Coordinates and results are in voxels.
   /// \param closed number of triangles of closed components, which come first; none lies within another one
   ///   that is oriented alike and touches it
-  /// \param caps caps of the surface's holes, which count for distances only
+  /// \param caps caps of the surface's holes, which count for distances but are no walls
   /// \param intersects_itself parts of the surface lie inside others and are not walls
   SurfaceDistance(std::span<const Vec3> points, std::span<const Triangle> triangles, std::size_t closed,
                   const TriangleMesh& caps, bool intersects_itself);
@@ -40,7 +41,7 @@ class SurfaceDistance {
   /// most directly.
   std::optional<SurfacePlace> nearest(const Vec3& point, double at_most) const;
 
-  /// Whether no triangle is nearer to a point than `radius`.
+  /// Whether no triangle but those of caps is nearer to a point than `radius`.
   bool is_ball_empty(const Vec3& center, double radius) const;
 
   /// True where the winding numbers of the closed components (exact) and of the open ones (by a tree) add up
@@ -50,7 +51,7 @@ class SurfaceDistance {
   enum class Side { wall, gap };
   /// The thickness of the wall behind a surface point, or the width of the gap in front of it, at most
   /// `at_most`: the diameter of the largest ball that touches the point and contains no wall facing it (the
-  /// shrinking ball of Ma, Bae & Choi 2012, restricted).
+  /// shrinking ball of Ma, Bae & Choi 2012, restricted). `at_most` on caps.
   /// \param facing a wall faces the point if the cosine between their normals is below -`facing`, so that
   ///   neither the flanks of a convex edge nor noise count
   double thickness(const SurfacePlace& place, Side side, double facing, double at_most) const;
@@ -70,7 +71,8 @@ class SurfaceDistance {
   BoxTree tree_;
   std::vector<std::array<Vec3, 3>> triangles_;  ///< in the order of the tree
   std::vector<Vec3> normals_;                   ///< unit; zero for triangles without area
-  std::vector<std::uint8_t> is_closed_;         ///< 1 for triangles of closed components
+  enum class Part : std::uint8_t { closed, open, cap };
+  std::vector<Part> parts_;  ///< the kind of component that each triangle is in
   std::optional<SurfaceTree> open_;
   bool intersects_itself_;
   std::vector<std::uint8_t> tells_side_;  ///< 1 if the inside is behind a triangle and nowhere else near it

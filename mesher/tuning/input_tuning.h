@@ -90,6 +90,28 @@ struct InputTuning {
     static constexpr double near = 0.05;
   };
 
+  /// Open surfaces that enclose next to nothing, and what is made of open surfaces.
+  struct OpenSurfaces {
+    /// Area of a hole's projection onto the plane in which it is largest, as a share of its component's area.
+    /// Above this a component is a sheet: a dome 1/4 as high as wide.
+    static constexpr double max_cap_share = 0.8;
+    /// Least area of the projection of all holes of a component, as a share of the largest: below this, holes
+    /// face each other, as those of a short tube do.
+    static constexpr double min_one_sided_share = 0.5;
+    /// A surface with more of its area in sheets encloses nothing worth meshing.
+    static constexpr double min_sheet_share = 0.5;
+    /// Depth of a base below the lowest point, as a share of the longer horizontal side: a block that is no
+    /// plate.
+    static constexpr double base_depth = 0.1;
+    /// Least eigenvalue of the sum of the normals' outer products around a point, as a share of the largest:
+    /// an edge that turns by 20 degrees. Below, normals differ by noise.
+    static constexpr double min_turn = 0.03;
+    /// Max length of an offset, in thicknesses: at edges that turn by 150 degrees.
+    static constexpr double max_mitre = 4;
+    /// Max rounds in which points follow those around them: what still turns over then crosses.
+    static constexpr int max_rounds = 50;
+  };
+
   /// Surfaces that divide bodies, continued beyond their borders.
   struct Partitions {
     /// Cosine between the directions of two edges on one side of a corner: 30 degrees, well below the corners

@@ -74,7 +74,7 @@ SurfaceGrid::Box SurfaceGrid::box_of(const MeshTriangle& t) {
   return box;
 }
 
-SurfaceGrid::Cell3 SurfaceGrid::cell_at(const Vec3& p) const {
+SurfaceGrid::Cell3 SurfaceGrid::smallest_cell_at(const Vec3& p) const {
   const auto axis = [&](int i) {
     // Clamp, so that a point far outside the grid's initial box still has a cell.
     return static_cast<std::int32_t>(std::floor(std::clamp((p[i] - origin_[i]) * to_cell_, -1e9, 1e9)));
@@ -82,22 +82,33 @@ SurfaceGrid::Cell3 SurfaceGrid::cell_at(const Vec3& p) const {
   return {axis(0), axis(1), axis(2)};
 }
 
-std::uint32_t SurfaceGrid::slot(const Cell3& c) const {
-  std::uint64_t h = static_cast<std::uint32_t>(c.x) * 0x9e3779b97f4a7c15u;
+SurfaceGrid::CellRange SurfaceGrid::range_of(const MeshTriangle& t) const {
+  return {smallest_cell_at(low_corner(t)), smallest_cell_at(high_corner(t))};
+}
+
+/// The lowest level whose cells are at least as large as the triangle, or the top one.
+int SurfaceGrid::level_of(const MeshTriangle& t) const {
+  const double cells = (high_corner(t) - low_corner(t)).maxCoeff() * to_cell_;
+  return cells < 1 ? 0 : std::min(std::ilogb(cells) / 2 + 1, top_level_);
+}
+
+std::uint32_t SurfaceGrid::slot(const Cell3& c, int level) const {
+  std::uint64_t h =
+      (static_cast<std::uint32_t>(c.x) + (static_cast<std::uint64_t>(level) << 32)) * 0x9e3779b97f4a7c15u;
   h = (h ^ (h >> 29) ^ static_cast<std::uint32_t>(c.y)) * 0xbf58476d1ce4e5b9u;
   h = (h ^ (h >> 31) ^ static_cast<std::uint32_t>(c.z)) * 0x94d049bb133111ebu;
   return static_cast<std::uint32_t>(h >> 32) & mask_;
 }
 
 template <class F>
-void SurfaceGrid::for_cells(const MeshTriangle& t, const F& f) const {
-  const Cell3 low = cell_at(low_corner(t)), high = cell_at(high_corner(t));
+void SurfaceGrid::for_cells(const CellRange& range, int level, const F& f) {
+  const Cell3 low = range.low.at_level(level), high = range.high.at_level(level);
   for (std::int32_t x = low.x; x <= high.x; ++x)
     for (std::int32_t y = low.y; y <= high.y; ++y)
       for (std::int32_t z = low.z; z <= high.z; ++z) f(Cell3{x, y, z});
 }
 
-void SurfaceGrid::build(const EditableMesh& mesh, double min_cell) {
+void SurfaceGrid::build(const EditableMesh& mesh) {
   mesh_ = &mesh;
   patches_.clear();
   {
@@ -119,22 +130,20 @@ void SurfaceGrid::build(const EditableMesh& mesh, double min_cell) {
     });
   }
   Vec3 low = Vec3::Zero();
-  double sum = 0, largest = 0;
+  double smallest = HUGE_VAL, largest = 0;
   bool first = true;
   for (const MeshTriangle& t : records_) {
     const Vec3 a = low_corner(t);
     const double extent = (high_corner(t) - a).maxCoeff();
     low = first ? a : low.cwiseMin(a);
     first = false;
-    sum += extent;
+    smallest = std::min(smallest, extent);
     largest = std::max(largest, extent);
   }
-  // Twice the mean extent: a triangle touches few cells, and a cell lists few triangles even after triangles
-  // have grown.
-  const double mean = records_.empty() ? 1 : sum / static_cast<double>(records_.size());
-  const double size = std::max({2 * mean, largest / Grid::max_cells_across, min_cell});
   origin_ = low;
-  to_cell_ = size > 0 ? 1 / size : 1;
+  smallest = std::max(smallest, std::ldexp(largest, -Grid::max_ratio));
+  to_cell_ = largest > 0 ? 1 / (Grid::smallest_cell * smallest) : 1;
+  top_level_ = std::max(0, largest > 0 ? std::ilogb(largest * to_cell_) / 2 + 1 + Grid::spare_levels : 0);
   const std::size_t slots = std::bit_ceil(std::max<std::size_t>(64, records_.size() / 2));
   mask_ = static_cast<std::uint32_t>(slots - 1);
   cells_.clear();
@@ -145,9 +154,9 @@ void SurfaceGrid::build(const EditableMesh& mesh, double min_cell) {
   });
 }
 
-void SurfaceGrid::rebuild(const EditableMesh& mesh, double min_cell, const std::vector<Index>& new_points) {
+void SurfaceGrid::rebuild(const EditableMesh& mesh, const std::vector<Index>& new_points) {
   if (!samples_) {
-    build(mesh, min_cell);
+    build(mesh);
     return;
   }
   struct Known {
@@ -163,7 +172,7 @@ void SurfaceGrid::rebuild(const EditableMesh& mesh, double min_cell, const std::
     before.push_back({ids, record});
   }
   const std::size_t old_records = records_.size();
-  build(mesh, min_cell);
+  build(mesh);
   std::vector<Known> after(records_.size());
   for (std::uint32_t i = 0; i < records_.size(); ++i) after[i] = {records_[i].ids, i};
   parallel_sort(before, by_ids);
@@ -183,41 +192,56 @@ void SurfaceGrid::reserve_twice() {
 }
 
 void SurfaceGrid::insert(std::uint32_t record) {
-  const Entry entry{record, cell_at(low_corner(records_[record])), box_of(records_[record])};
-  for_cells(records_[record], [&](const Cell3& c) {
-    Cell& cell = cells_[slot(c)];
+  const CellRange range = range_of(records_[record]);
+  const int level = level_of(records_[record]);
+  const Entry entry{record, level, range.low.at_level(level), box_of(records_[record])};
+  for_cells(range, level, [&](const Cell3& c) {
+    Cell& cell = cells_[slot(c, level)];
     cell.lock();
     // Two cells that a triangle touches may share a slot.
     if (std::none_of(cell.entries.begin(), cell.entries.end(), with_record(record)))
       cell.entries.push_back(entry);
     cell.unlock();
   });
+  for (int above = level + 1; above <= top_level_; ++above)
+    for_cells(range, above, [&](const Cell3& c) { cells_[slot(c, above)].set_finer(); });
+}
+
+template <class Test>
+bool SurfaceGrid::any_in_cell(const Cell3& c, int level, const CellRange& range, const Box& box,
+                              const Test& test) const {
+  const Cell& cell = cells_[slot(c, level)];
+  const Cell3 low = range.low.at_level(level);
+  for (const Entry& e : cell.entries)
+    // A pair that shares several cells is tested in the cell with the low corner of the intersection of their
+    // boxes.
+    if (e.level == level && std::max(low.x, e.low.x) == c.x && std::max(low.y, e.low.y) == c.y &&
+        std::max(low.z, e.low.z) == c.z && box.meets(e.box) && test(e))
+      return true;
+  if (level == 0 || !cell.has_finer()) return false;
+  const Cell3 first = range.low.at_level(level - 1), last = range.high.at_level(level - 1);
+  for (std::int32_t x = std::max(4 * c.x, first.x); x <= std::min(4 * c.x + 3, last.x); ++x)
+    for (std::int32_t y = std::max(4 * c.y, first.y); y <= std::min(4 * c.y + 3, last.y); ++y)
+      for (std::int32_t z = std::max(4 * c.z, first.z); z <= std::min(4 * c.z + 3, last.z); ++z)
+        if (any_in_cell({x, y, z}, level - 1, range, box, test)) return true;
+  return false;
 }
 
 bool SurfaceGrid::intersects_existing(const MeshTriangle& t, std::span<const std::uint32_t> removed,
                                       std::vector<std::array<Index, 2>>* narrow) const {
-  const Cell3 low = cell_at(low_corner(t));
+  const auto intersects = [&](const Entry& e) {
+    const MeshTriangle& other = records_[e.record];
+    if (std::find(removed.begin(), removed.end(), e.record) != removed.end()) return false;
+    if (triangles_intersect(t, other)) return true;
+    if (narrow)
+      if (const auto edge = narrow_edge(t, other)) narrow->push_back(*edge);
+    return false;
+  };
+  const CellRange range = range_of(t);
   const Box box = box_of(t);
   bool hit = false;
-  for_cells(t, [&](const Cell3& c) {
-    if (hit) return;
-    for (const Entry& e : cells_[slot(c)].entries) {
-      // Test a pair that shares several cells only in the cell with the low corner of the intersection of
-      // their boxes.
-      if (std::max(low.x, e.low.x) != c.x || std::max(low.y, e.low.y) != c.y ||
-          std::max(low.z, e.low.z) != c.z)
-        continue;
-      if (!box.meets(e.box)) continue;
-      const MeshTriangle& other = records_[e.record];
-      if (std::find(removed.begin(), removed.end(), e.record) != removed.end()) continue;
-      if (triangles_intersect(t, other)) {
-        hit = true;
-        return;
-      }
-      if (narrow)
-        if (const auto edge = narrow_edge(t, other)) narrow->push_back(*edge);
-    }
-  });
+  for_cells(range, top_level_,
+            [&](const Cell3& c) { hit = hit || any_in_cell(c, top_level_, range, box, intersects); });
   return hit;
 }
 
@@ -233,7 +257,8 @@ bool SurfaceGrid::embedded() const {
 }
 
 std::uint32_t SurfaceGrid::record_of(const MeshTriangle& t) const {
-  const auto& list = cells_[slot(cell_at(low_corner(t)))].entries;
+  const int level = level_of(t);
+  const auto& list = cells_[slot(smallest_cell_at(low_corner(t)).at_level(level), level)].entries;
   const auto it =
       std::find_if(list.begin(), list.end(), [&](const Entry& e) { return records_[e.record].ids == t.ids; });
   TETWRIGHT_CHECK(it != list.end());
@@ -312,8 +337,9 @@ void SurfaceGrid::take_records(Edit& edit) {
 void SurfaceGrid::commit(const Edit& edit) {
   for (std::size_t k = 0; k < edit.removed.size(); ++k) {
     const std::uint32_t record = edit.removed_records[k];
-    for_cells(edit.removed[k], [&](const Cell3& c) {
-      Cell& cell = cells_[slot(c)];
+    const int level = level_of(edit.removed[k]);
+    for_cells(range_of(edit.removed[k]), level, [&](const Cell3& c) {
+      Cell& cell = cells_[slot(c, level)];
       cell.lock();
       auto& list = cell.entries;
       if (const auto it = std::find_if(list.begin(), list.end(), with_record(record)); it != list.end()) {

@@ -15,9 +15,11 @@ namespace tetwright {
 
 class SurfaceSamples;
 
-/// The boundary and interface triangles of an EditableMesh with their coordinates, in a hashed spatial grid.
-/// It tests for self-intersection explicitly, because positive tets alone do not prevent it: two parts of a
-/// surface may pass through each other from outside. Also keeps the patches of interface faces.
+/// The boundary and interface triangles of an EditableMesh with their coordinates, in a hashed hierarchical
+/// grid (Eitz & Gu 2007): each triangle is in cells a few times as large as itself, so that cells list few
+/// triangles whatever their sizes. It tests for self-intersection explicitly, because positive tets alone do
+/// not prevent it: two parts of a surface may pass through each other from outside. Also keeps the patches of
+/// interface faces.
 ///
 /// Concurrency: nothing is written while operations are decided. During commit, each operation writes the
 /// records of its own triangles and the grid cells that they touch, each guarded by a short lock. The order
@@ -68,15 +70,12 @@ class SurfaceGrid {
   };
 
   /// Fills the grid with all interface triangles of the mesh; record i is face i of interface_faces().
-  ///
-  /// \param min_cell min size of a grid cell, working coordinates: the size that triangles are about to
-  ///   reach.
   /// \pre No task runs.
-  void build(const EditableMesh& mesh, double min_cell);
+  void build(const EditableMesh& mesh);
   /// build() for the same mesh after its points were renumbered. Samples stay with their triangles.
   ///
   /// \param new_points new numbers by old ones.
-  void rebuild(const EditableMesh& mesh, double min_cell, const std::vector<Index>& new_points);
+  void rebuild(const EditableMesh& mesh, const std::vector<Index>& new_points);
   std::size_t record_count() const { return records_.size(); }
   /// Sets the samples that the triangles own, or null; they must outlive the last edit.
   void set_samples(SurfaceSamples* samples) { samples_ = samples; }
@@ -123,9 +122,16 @@ class SurfaceGrid {
   std::vector<MeshTriangle> triangles() const;
 
  private:
+  /// A cell of a level. Those of level 0 are the smallest; on each further level they are four times as
+  /// large: with a factor of two, more time goes into levels than into triangles.
   struct Cell3 {
     std::int32_t x, y, z;
+    Cell3 at_level(int level) const { return {x >> 2 * level, y >> 2 * level, z >> 2 * level}; }
     bool operator==(const Cell3&) const = default;
+  };
+  /// The cells of level 0 that a box touches.
+  struct CellRange {
+    Cell3 low, high;
   };
   /// A triangle's bounding box, rounded outwards. It separates most pairs without reading their triangles.
   struct Box {
@@ -138,10 +144,11 @@ class SurfaceGrid {
   };
   struct Entry {
     std::uint32_t record;
-    Cell3 low;  ///< the cell of the box's low corner
+    std::int32_t level;
+    Cell3 low;  ///< the cell of the box's low corner, of this level
     Box box;
   };
-  /// Entries of the triangles whose boxes touch the cell.
+  /// Entries of the triangles of this level whose boxes touch the cell.
   struct Cell {
     std::vector<Entry> entries;
     void lock() {
@@ -149,19 +156,33 @@ class SurfaceGrid {
       }
     }
     void unlock() { std::atomic_ref<std::uint8_t>(locked).store(0, std::memory_order_release); }
-    std::uint8_t locked = 0;
+    void set_finer() {
+      if (!has_finer()) std::atomic_ref<std::uint8_t>(finer).store(1, std::memory_order_relaxed);
+    }
+    /// Whether smaller triangles have been in the cell since the grid was built.
+    bool has_finer() const {
+      return std::atomic_ref<std::uint8_t>(const_cast<std::uint8_t&>(finer))
+                 .load(std::memory_order_relaxed) != 0;
+    }
+    std::uint8_t locked = 0, finer = 0;
   };
   static Box box_of(const MeshTriangle& t);
-  Cell3 cell_at(const Vec3& p) const;
-  std::uint32_t slot(const Cell3& c) const;
-  /// Calls f(cell) for each cell that the triangle's box touches.
+  Cell3 smallest_cell_at(const Vec3& p) const;
+  CellRange range_of(const MeshTriangle& t) const;
+  int level_of(const MeshTriangle& t) const;
+  std::uint32_t slot(const Cell3& c, int level) const;
+  /// Calls f(cell) for each cell of a level in a range.
   template <class F>
-  void for_cells(const MeshTriangle& t, const F& f) const;
+  static void for_cells(const CellRange& range, int level, const F& f);
   void insert(std::uint32_t record);
   /// Whether t intersects a triangle whose record is not among `removed`. Appends to `narrow`, unless it is
   /// null, the edges at which t and another triangle are nearly folded together.
   bool intersects_existing(const MeshTriangle& t, std::span<const std::uint32_t> removed,
                            std::vector<std::array<Index, 2>>* narrow = nullptr) const;
+  /// Calls `test(entry)` for the entries in a cell and smaller ones within it whose boxes meet `box`, each in
+  /// one cell only, until it returns true.
+  template <class Test>
+  bool any_in_cell(const Cell3& c, int level, const CellRange& range, const Box& box, const Test& test) const;
   /// The records in use, ascending.
   std::vector<std::uint32_t> records_in_use() const;
   /// The record of an existing triangle.
@@ -170,7 +191,8 @@ class SurfaceGrid {
 
   const EditableMesh* mesh_ = nullptr;  ///< maps copies of a point to their original
   Vec3 origin_ = Vec3::Zero();
-  double to_cell_ = 1;
+  double to_cell_ = 1;  ///< of level 0
+  int top_level_ = 0;   ///< larger triangles touch more of its cells
   std::uint32_t mask_ = 0;
   std::vector<Cell> cells_;            ///< by slot
   std::vector<MeshTriangle> records_;  ///< ids ascending, points in the same order

@@ -42,11 +42,10 @@ void Engine::compact() {
   const std::size_t spare = mesh_.live_tets() / Slots::spare_inverse + Slots::min_spare;
   SlotNumbers numbers;
   mesh_.compact(spare, spare / 2, &numbers);
-  const double min_cell = rules.objective.quality.ideal_edge / 2;
   if (first) {
-    grid_.build(mesh_, min_cell);
+    grid_.build(mesh_);
   } else {
-    grid_.rebuild(mesh_, min_cell, numbers.points);
+    grid_.rebuild(mesh_, numbers.points);
   }
   // An embedded mesh stays embedded, since every operation preserves this.
   if (first) rules.embedded = mesh_.all_positive() && grid_.embedded();

@@ -93,7 +93,7 @@ void run_operations(std::string_view input_bytes) {
   EditableMesh mesh(std::move(input), "fuzz");
   mesh.compact(2048, 512);
   SurfaceGrid grid;
-  grid.build(mesh, 0);
+  grid.build(mesh);
   const InputSurface surface(mesh, nullptr);
   SurfaceSamples samples(mesh, grid.record_count(), surface, mesh.space().scale());
   grid.set_samples(&samples);

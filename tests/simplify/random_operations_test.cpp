@@ -108,7 +108,7 @@ void operate(const TetMesh& mesh, std::uint64_t seed, bool bounded, Counts& coun
   const Topology before = topology(mesh);
   Workbench w(mesh);
   w.mesh.compact(4096, 1024);
-  w.grid.build(w.mesh, 0);
+  w.grid.build(w.mesh);
   w.own_samples(w.mesh.space().scale());
   if (bounded) w.rules.deviation.max = 0.3 * w.mesh.space().scale();
   w.ws = std::make_unique<Workspace>(w.mesh, w.grid, w.ledger);

@@ -31,7 +31,7 @@ struct Workbench {
         mesh.set_quality(t, rules.objective(mesh.position(p[0]), mesh.position(p[1]), mesh.position(p[2]),
                                             mesh.position(p[3])));
     }
-    grid.build(mesh, 0);
+    grid.build(mesh);
     ws = std::make_unique<Workspace>(mesh, grid, ledger);
   }
 

@@ -110,6 +110,7 @@ MesherInput repaired(const std::vector<TriangleMesh>& surfaces, const std::vecto
   // Caps are no part of the surfaces to compare with.
   CapOptions caps;
   caps.close_flat = false;
+  caps.open.accept_sheets = true;
   return make_mesher_input(std::move(materials), {}, NestedRule::automatic, {}, {}, nullptr, {}, caps);
 }
 

@@ -87,6 +87,8 @@ bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
         "--regions and --region are for surfaces, and the input is a segmented volume; --label-names names "
         "its labels");
   if (!bodies.caps.empty()) throw UsageError("--cap is for surfaces, and the input is a segmented volume");
+  if (bodies.base || bodies.thickness)
+    throw UsageError("--base and --thicken are for surfaces, and the input is a segmented volume");
   return true;
 }
 
@@ -235,10 +237,14 @@ MesherInput read_surfaces(std::vector<Input>& inputs, PrepareRun& run) {
     contact.relative_tolerance = options.contact_tolerance->value / 100;
   else if (options.contact_tolerance)
     contact.tolerance = options.contact_tolerance->value;
-  if (options.extend) sheets.extend = options.extend->in_input_units(diagonal_of(surfaces));
+  const double diagonal = diagonal_of(surfaces);
+  if (options.extend) sheets.extend = options.extend->in_input_units(diagonal);
   CapOptions caps;
   caps.feature_angle = run.options.feature_angle;
   caps.names = options.caps;
+  caps.open.base = options.base;
+  if (options.thickness) caps.open.thickness = options.thickness->in_input_units(diagonal);
+  caps.open.accept_sheets = run.options.acceptance.accept_changes;
   MesherInput input = make_mesher_input(std::move(surfaces), std::move(layers), options.nested, contact,
                                         options.regions, &run.progress, sheets, caps);
   std::vector<Diagnostic>& all = run.report.diagnostics;

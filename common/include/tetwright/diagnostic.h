@@ -66,6 +66,8 @@ enum class DiagnosticCode : std::uint8_t {
   walls_kept_as_sheets,
   triangles_turned,
   holes_closed,
+  base_added,
+  sheet_thickened,
   surface_self_intersects,
   components_turned,
   components_unclear,
@@ -133,8 +135,8 @@ struct DiagnosticKind {
   const char* name;  ///< "target-missed"; stays the same from version to version
   Severity severity;
   Yields yields = Yields::never;
-  /// False: the result differs from an estimate, which may itself be wrong. Never counts as a note for
-  /// --strict.
+  /// False: the result differs from an estimate, which may itself be wrong, or was asked for. Never counts as
+  /// a note for --strict.
   bool certain = true;
   const char* title;  ///< a few words for lists
   const char* message =

@@ -187,6 +187,21 @@ struct SheetOptions {
   double extend = 0;
 };
 
+/// z of the base below a height field, input units; std::nullopt: a tenth of the longer horizontal side below
+/// its lowest point.
+using BaseHeight = std::optional<double>;
+
+/// How open surfaces become bodies.
+struct OpenSurfaceOptions {
+  /// Open surfaces are height fields, the tops of blocks with vertical walls and a flat base.
+  std::optional<BaseHeight> base = {};
+  /// Open surfaces are the fronts of shells of this thickness, input units, which lie behind them.
+  std::optional<double> thickness = {};
+  /// Surfaces that are mainly sheets, with one hole almost as large as they are, are closed like others
+  /// instead of refused.
+  bool accept_sheets = false;
+};
+
 /// How holes of surfaces are closed.
 struct CapOptions {
   /// True: a hole with a flat rim gets a cap in the rim's plane. Otherwise all holes are left to the winding
@@ -194,6 +209,7 @@ struct CapOptions {
   bool close_flat = true;
   FeatureAngle feature_angle = {};     ///< rims of flat caps that turn by more are creases
   std::vector<RegionSeed> names = {};  ///< each for the cap nearest to its point
+  OpenSurfaceOptions open = {};
 };
 
 /// A hole of a surface, and its cap.
@@ -293,8 +309,10 @@ enum class SurfaceFlaw : std::uint8_t {
 /// become one with such cells, instead of the first of them. Its groups are called like the surfaces. A
 /// single cell is called like the first of them.
 ///
-/// Flat holes are closed first, see CapOptions. Caps are called cap_1, cap_2 and so on by size, largest
-/// first.
+/// Open surfaces first become blocks or shells, if that is asked for (OpenSurfaceOptions). The groups of
+/// their faces are called top, side and base, or front, back and rim.
+///
+/// Flat holes are then closed, see CapOptions. Caps are called cap_1, cap_2 and so on by size, largest first.
 ///
 /// If more than one surface has groups of triangles, names that occur in several surfaces are qualified (see
 /// qualify_names()), and groups that have only a number are named after their surface.
@@ -307,10 +325,13 @@ enum class SurfaceFlaw : std::uint8_t {
 ///
 /// \param progress may be null
 /// \pre non-empty names differ, and so do tags
-/// \throws InputError as repair_surface() does; for surfaces that cannot be joined, bodies that cross with
-///   OverlapRule::error; for sheets and partitions that are closed, meet others or are in no body; for
-///   coordinates too large or a size too small for areas and volumes in double precision
-/// \throws UsageError for no surface, sheets together with layers, two materials of one name or tag, a layer
+/// \throws InputError as repair_surface() does; for surfaces that enclose nothing (OpenSurfaceOptions),
+/// height
+///   fields that overhang and shells that cross themselves; for surfaces that cannot be joined, bodies that
+///   cross with OverlapRule::error; for sheets and partitions that are closed, meet others or are in no body;
+///   for coordinates too large or a size too small for areas and volumes in double precision
+/// \throws UsageError for no surface, a base or thickness but no open surface, a base above the surface,
+/// sheets together with layers, two materials of one name or tag, a layer
 ///   whose thickness is not above 0, more than 60,000 materials, a seed that is in no cell or whose cell
 ///   another one names, or a name for a cap that is taken or far from all holes
 MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers = {},

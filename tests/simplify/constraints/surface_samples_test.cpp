@@ -203,7 +203,7 @@ TEST(SurfaceSamples, StayWithTheirTrianglesThroughCompaction) {
   const auto before = all();
   SlotNumbers numbers;
   w.mesh.compact(64, 32, &numbers);
-  w.grid.rebuild(w.mesh, 0, numbers.points);
+  w.grid.rebuild(w.mesh, numbers.points);
   EXPECT_EQ(count_owned(w), w.samples->size());
   EXPECT_TRUE(all() == before);
 }

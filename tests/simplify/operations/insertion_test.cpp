@@ -130,7 +130,7 @@ TEST(InsertionLimits, CountAndRoom) {
   // Without free slots an insertion adds some.
   Workbench tight(grid_mesh(2));
   tight.mesh.compact(0, 0);
-  tight.grid.build(tight.mesh, 0);
+  tight.grid.build(tight.mesh);
   make_bad(tight);
   EXPECT_EQ(tight.mesh.free_tets().available(), 0u);
   for (Index t = 0; t < 10; ++t) {

@@ -157,6 +157,10 @@ struct BodyOptions {
   std::vector<RegionSeed> caps;
   /// Borders of Input::as_partition() that end before the boundary of a body are extended by at most this.
   std::optional<Length> extend;
+  /// Open surfaces are height fields, which become the tops of blocks (OpenSurfaceOptions::base).
+  std::optional<BaseHeight> base;
+  /// Open surfaces are the fronts of shells of this thickness (OpenSurfaceOptions::thickness).
+  std::optional<Length> thickness;
   /// True: each solid, group or label of a surface's triangles becomes a material of that name instead of a
   /// patch.
   bool split_solids = false;
