@@ -77,6 +77,12 @@ void validate_materials_left(const MesherInput& input, const MaterialField& fiel
                              const std::vector<std::uint8_t>& there) {
   if (std::count(there.begin() + 1, there.end(), 1) == 0) {
     validate_encloses(input, input.bodies[0]);
+    if (input.bodies.size() > 1)
+      throw NothingToMeshError(input.bodies[0].file +
+                               ": this and all other surfaces are smaller than a cell, since together they "
+                               "extend from " +
+                               place_text(input.low) + " to " + place_text(input.high) +
+                               "; check the units and positions of all, or use a higher resolution");
     throw NothingToMeshError(
         input.bodies[0].file +
         ": the surface is smaller than a cell; use a higher resolution or a smaller voxel size");

@@ -48,7 +48,7 @@ void turn_up(OrientedSurface& s, const std::string& file) {
 /// Whether the outside is beyond a rim, not a hole of the component.
 bool is_outer(const HoleRim& rim) { return rim.vector.z() < 0; }
 
-/// Throws InputError with the place where walls cross, if some do.
+/// Throws InputError with the position where walls cross, if some do.
 void refuse_crossing(const OrientedSurface& s, std::size_t first_wall, const std::string& file) {
   for (const auto& [a, b] : self_intersections(s.points, s.triangles))
     if (b >= first_wall)

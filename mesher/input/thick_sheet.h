@@ -17,7 +17,7 @@ namespace tetwright {
 /// \param thickness above 0, input units
 /// \return what was done
 /// \throws InputError for edges of three or more triangles, and for a shell that crosses itself, with the
-///   place
+///   position
 Diagnostic thicken(OrientedSurface& surface, const std::string& file, double thickness);
 
 }  // namespace tetwright

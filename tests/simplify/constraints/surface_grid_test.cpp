@@ -67,6 +67,27 @@ TEST(SurfaceGrid, AHarmlessTriangleReplacesAnother) {
   EXPECT_FALSE(w.grid.test(through));
 }
 
+// A large triangle is in cells of a higher level than those it crosses, and the other way round.
+TEST(SurfaceGrid, TrianglesOfAllSizesAreFound) {
+  Workbench w(grid_mesh(6));
+  const double s = w.mesh.space().scale();
+  const Vec3 middle = Vec3(3, 3, 6) * s;
+  for (const double size : {1e-3, 0.02, 0.3, 2.0, 40.0}) {
+    const auto crosses = [&](double height) {
+      SurfaceGrid::Edit edit;
+      edit.removed = {boundary_triangle(w)};
+      const Vec3 at = middle + Vec3(0.11, 0.07, height) * s;
+      edit.added = {{{edit.removed[0].ids,
+                      {at - Vec3(size, 0, size) * s, at + Vec3(size, 0.1 * size, -size) * s,
+                       at + Vec3(0, 0, size) * s}},
+                     0}};
+      return !w.grid.test(edit);
+    };
+    EXPECT_TRUE(crosses(0)) << size;
+    EXPECT_FALSE(crosses(1.1 * size)) << size;
+  }
+}
+
 TEST(SurfaceGrid, AddedTrianglesAreTestedAgainstEachOther) {
   Workbench w(grid_mesh(4));
   const double s = w.mesh.space().scale();
