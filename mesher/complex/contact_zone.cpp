@@ -3,6 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <queue>
+#include <set>
+#include <utility>
+#include <vector>
 
 #include "common/features/edge_uses.h"
 #include "common/geometry/morton.h"
@@ -85,23 +90,25 @@ void make_unique(std::vector<Item>& list) {
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
-/// Calls `visit(edge)` with the edges of a line that begin within `reach` of one of its points, along it.
+/// Calls `visit(edge, point, distance)` with the edges that begin within `reach` of a point along lines, and
+/// the nearer point of each with its distance.
 template <class Visit>
-void walk_along_line(Index from, double reach, const std::vector<TouchingEdge>& edges,
-                     const std::vector<std::vector<Index>>& edges_at, const std::vector<Vec3>& points,
-                     const Visit& visit) {
-  std::vector<std::pair<Index, double>> waiting{{from, 0}};
-  std::vector<Index> visited;
+void walk_along_lines(Index from, double reach, const std::vector<TouchingEdge>& edges,
+                      const std::vector<std::vector<Index>>& edges_at, const std::vector<Vec3>& points,
+                      const Visit& visit) {
+  using Reached = std::pair<double, Index>;
+  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> waiting;
+  std::set<Index> visited;
+  waiting.emplace(0, from);
   while (!waiting.empty()) {
-    const auto [p, distance] = waiting.back();
-    waiting.pop_back();
+    const auto [distance, p] = waiting.top();
+    waiting.pop();
     for (const Index e : edges_at[p]) {
-      if (std::find(visited.begin(), visited.end(), e) != visited.end()) continue;
-      visited.push_back(e);
-      visit(e);
+      if (!visited.insert(e).second) continue;
+      visit(e, p, distance);
       const auto& [a, b] = edges[e].ends;
       const double beyond = distance + (points[b] - points[a]).norm();
-      if (beyond < reach) waiting.emplace_back(p == a ? b : a, beyond);
+      if (beyond < reach) waiting.emplace(beyond, p == a ? b : a);
     }
   }
 }
@@ -170,8 +177,9 @@ void ContactZone::add_touching_edges(const LabelledComplex& complex, const std::
   for (Index p = 0; p < points.size(); ++p) {
     if (!is_end[p]) continue;
     const auto& [a, b] = edges[edges_at[p][0]].ends;
-    walk_along_line(p, Zone::reach, edges, edges_at, points,
-                    [&](Index e) { near_ends_[e].push_back(static_cast<Index>(ends_.size())); });
+    walk_along_lines(p, Zone::reach, edges, edges_at, points, [&](Index e, Index from, double along) {
+      near_ends_[e].push_back({static_cast<Index>(ends_.size()), points[from], along});
+    });
     ends_.push_back({points[p], (points[p == a ? b : a] - points[p]).normalized()});
   }
   std::vector<ProjectionTree::Item> items;
@@ -196,11 +204,18 @@ std::optional<ContactZone::NearLine> ContactZone::near_line(const Vec3& point, R
   });
   if (!hit) return {};
   NearLine line{point - hit->point, HUGE_VAL, Vec3::Zero()};
-  for (const Index e : near_ends_[touching_.items()[hit->item].kind[1]])
-    if (const double from_end = (point - ends_[e].point).dot(ends_[e].inwards); from_end < line.from_end) {
-      line.from_end = from_end;
-      line.inwards = ends_[e].inwards;
-    }
+  for (const NearEnd& near : near_ends_[touching_.items()[hit->item].kind[1]]) {
+    // Where the line turns, the plane across its end says nothing.
+    const Vec3 from = hit->point - near.from;
+    const double along = near.along + from.norm();
+    if (along > Zone::reach) continue;
+    const EndOfLine& end = ends_[near.end];
+    const double across = (point - end.point).dot(end.inwards), beside = along - line.away.norm();
+    const double from_end = std::max(across, beside);
+    if (!(from_end < line.from_end)) continue;
+    line.from_end = from_end;
+    line.inwards = across >= beside ? end.inwards : Vec3(from.normalized() - line.away.normalized());
+  }
   return line;
 }
 

@@ -86,14 +86,22 @@ class ContactZone {
 
   /// A point near a line in which bodies touch.
   struct NearLine {
-    Vec3 away;        ///< from the nearest point of the line
-    double from_end;  ///< distance from the plane across the line's end; infinite if the line goes on
-    Vec3 inwards;     ///< unit, from the end
+    Vec3 away;  ///< from the nearest point of the line
+    /// Distance from the plane across the line's end, at least that along the line less the one from it;
+    /// infinite if the line goes on.
+    double from_end;
+    Vec3 inwards;  ///< gradient of that
   };
   /// Where a line in which bodies touch ends.
   struct EndOfLine {
     Vec3 point;
     Vec3 inwards;  ///< unit, along the line
+  };
+  /// An end near an edge of its line.
+  struct NearEnd {
+    Index end;
+    Vec3 from;     ///< the edge's point that is nearer to the end along the line
+    double along;  ///< distance of that point from the end, along the line
   };
 
   void add_junctions(const LabelledComplex& complex, const std::vector<Vec3>& points,
@@ -114,8 +122,8 @@ class ContactZone {
   std::vector<std::vector<RegionIndex>> touching_regions_;
   ProjectionTree touching_;  ///< touching_edges(); kinds: indices into touching_regions_ and near_ends_
   std::vector<EndOfLine> ends_;
-  std::vector<std::vector<Index>> near_ends_;  ///< by touching edge: ends within reach along its line
-  std::vector<Face> faces_;                    ///< in the order of the tree
+  std::vector<std::vector<NearEnd>> near_ends_;  ///< by touching edge: ends within reach along its line
+  std::vector<Face> faces_;                      ///< in the order of the tree
   std::unordered_map<std::uint64_t, Mask> leaves_;
 };
 

@@ -112,6 +112,10 @@ void order_from_top(std::vector<SurfaceCell>& cells) {
   cells = std::move(sorted);
 }
 
+bool has_code(const std::vector<Diagnostic>& findings, DiagnosticCode code) {
+  return std::any_of(findings.begin(), findings.end(), [&](const Diagnostic& d) { return d.code == code; });
+}
+
 /// Names in quotes, of many the first ones.
 std::string listed(const std::set<std::string>& names) {
   std::string text;
@@ -137,6 +141,9 @@ std::vector<BodyBuilder::ClosedSurface> BodyBuilder::close_holes(std::vector<Mat
                                                                  bool partitioned) {
   std::vector<ClosedSurface> closed;
   std::vector<SurfaceHole>& holes = input_.holes;
+  CapOptions options = caps_;
+  // Of surfaces that nearly close together, meshing says what is missing.
+  options.open.accept_sheets |= has_code(input_.findings, DiagnosticCode::surfaces_not_joined);
   Vec3 low = Vec3::Constant(INFINITY), high = Vec3::Constant(-INFINITY);
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     MaterialSurface& s = surfaces[i];
@@ -163,7 +170,7 @@ std::vector<BodyBuilder::ClosedSurface> BodyBuilder::close_holes(std::vector<Mat
     }
     if (own.has_cells() && partitioned) own.walled.reset();
     if (own.has_cells()) continue;
-    for (SurfaceHole& hole : close_flat_holes(own.cleaned, s.surface.groups, s.file, caps_, own.findings)) {
+    for (SurfaceHole& hole : close_flat_holes(own.cleaned, s.surface.groups, s.file, options, own.findings)) {
       hole.surface = i;
       holes.push_back(std::move(hole));
     }

@@ -48,8 +48,8 @@ Triangle with_ascending_points(Triangle t) {
 class FlatCapFinder {
  public:
   FlatCapFinder(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
-                const std::vector<HoleRim>& rims, const std::vector<Index>& component)
-      : points_(points), triangles_(triangles), rims_(rims), component_(component) {
+                const std::vector<HoleRim>& rims, const std::vector<Index>& component, bool of_body)
+      : points_(points), triangles_(triangles), rims_(rims), component_(component), of_body_(of_body) {
     Eigen::AlignedBox3d box;
     for (const Vec3& p : points) box.extend(p);
     diagonal_ = box.diagonal().norm();
@@ -63,9 +63,9 @@ class FlatCapFinder {
     std::stable_sort(flat.begin(), flat.end(), [&](std::size_t a, std::size_t b) {
       return rims_[a].vector.squaredNorm() > rims_[b].vector.squaredNorm();
     });
-    if (flat.size() > Tuning::max_flat) flat.resize(Tuning::max_flat);
+    if (flat.size() > Tuning::max_flat && !of_body_) flat.resize(Tuning::max_flat);
     for (const std::vector<std::size_t>& together : in_common_planes(flat)) fill(together);
-    drop_degenerate();
+    if (!of_body_) drop_degenerate();
     drop_intersecting();
     return std::move(caps_);
   }
@@ -80,7 +80,8 @@ class FlatCapFinder {
 
   bool is_flat(std::size_t r) const {
     const HoleRim& rim = rims_[r];
-    return rim.balanced && rim.vector.norm() >= Tuning::min_share * area_ && lies_in_plane_of(rim, rim);
+    return rim.balanced && (of_body_ || rim.vector.norm() >= Tuning::min_share * area_) &&
+           lies_in_plane_of(rim, rim);
   }
 
   /// Rims that may enclose each other: in one plane, with boxes that overlap.
@@ -261,6 +262,7 @@ class FlatCapFinder {
   const std::vector<Triangle>& triangles_;
   const std::vector<HoleRim>& rims_;
   const std::vector<Index>& component_;
+  bool of_body_;
   double diagonal_ = 0, area_ = 0;
   std::vector<FlatCap> caps_;
 };
@@ -303,8 +305,9 @@ std::vector<HoleRim> find_rims(const std::vector<Vec3>& points, const std::vecto
 }
 
 std::vector<FlatCap> find_flat_caps(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
-                                    const std::vector<HoleRim>& rims, const std::vector<Index>& component) {
-  return FlatCapFinder(points, triangles, rims, component).find();
+                                    const std::vector<HoleRim>& rims, const std::vector<Index>& component,
+                                    bool of_body) {
+  return FlatCapFinder(points, triangles, rims, component, of_body).find();
 }
 
 }  // namespace tetwright

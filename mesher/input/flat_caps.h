@@ -38,8 +38,11 @@ std::vector<HoleRim> find_rims(const std::vector<Vec3>& points, const std::vecto
 /// plane go once.
 /// \param rims find_rims() of the triangles
 /// \param component of each triangle; caps are compared with the area of the components that they close
+/// \param of_body all rims are those of a body, so that caps of any size and distance from the surface are
+///   kept
 /// \return also those that are not kept
 std::vector<FlatCap> find_flat_caps(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
-                                    const std::vector<HoleRim>& rims, const std::vector<Index>& component);
+                                    const std::vector<HoleRim>& rims, const std::vector<Index>& component,
+                                    bool of_body = false);
 
 }  // namespace tetwright

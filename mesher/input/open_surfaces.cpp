@@ -8,7 +8,6 @@
 #include "common/message_text.h"
 #include "mesher/input/height_block.h"
 #include "mesher/input/surface_cleaning.h"
-#include "mesher/input/surface_holes.h"
 #include "mesher/input/thick_sheet.h"
 #include "mesher/tuning/input_tuning.h"
 #include "tetwright/error.h"
@@ -67,9 +66,10 @@ void close_open_surfaces(std::vector<MaterialSurface>& surfaces, const OpenSurfa
   if (options.base && options.thickness)
     throw UsageError(
         "--base and --thicken are two ways to make a body of an open surface; leave one of them out");
+  if (options.thickness && !(*options.thickness > 0 && std::isfinite(*options.thickness)))
+    throw UsageError("the thickness of a shell must be above 0, not " + short_number(*options.thickness));
   bool any = false;
   for (MaterialSurface& from : surfaces) {
-    if (!has_free_edges(from.surface.triangles)) continue;
     std::vector<Diagnostic> own;
     OrientedSurface s = orient(from, own);
     if (!is_open(s)) continue;
@@ -91,11 +91,13 @@ void close_open_surfaces(std::vector<MaterialSurface>& surfaces, const OpenSurfa
 
 void require_enclosing(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                        const std::vector<Index>& component, const std::vector<HoleRim>& rims,
-                       const std::string& file) {
+                       const std::vector<char>& has_lid, const std::string& file) {
   struct Extent {
+    std::size_t triangles = 0;
     double area = 0;
     Vec3 holes = Vec3::Zero();  // sum of area times normal
     const HoleRim* largest = nullptr;
+    bool has_lid = false;  // on the largest
   };
   std::vector<Extent> extents;
   double area = 0;
@@ -103,19 +105,24 @@ void require_enclosing(const std::vector<Vec3>& points, const std::vector<Triang
     if (component[t] >= extents.size()) extents.resize(component[t] + 1);
     const double own = area_vector(points, triangles[t]).norm();
     extents[component[t]].area += own;
+    ++extents[component[t]].triangles;
     area += own;
   }
-  for (const HoleRim& rim : rims) {
-    Extent& e = extents[component[rim.at_triangle[0]]];
-    e.holes += rim.vector;
-    if (!e.largest || rim.vector.norm() > e.largest->vector.norm()) e.largest = &rim;
+  for (std::size_t r = 0; r < rims.size(); ++r) {
+    Extent& e = extents[component[rims[r].at_triangle[0]]];
+    e.holes += rims[r].vector;
+    if (e.largest && !(rims[r].vector.norm() > e.largest->vector.norm())) continue;
+    e.largest = &rims[r];
+    e.has_lid = has_lid[r] != 0;
   }
   double in_sheets = 0;
   const Extent* first = nullptr;
   for (const Extent& e : extents) {
-    if (!e.largest) continue;
+    // Triangles on their own form no surface at all.
+    if (!e.largest || e.has_lid || e.triangles < 2) continue;
     const double hole = e.largest->vector.norm();
-    if (hole <= OpenTuning::max_cap_share * e.area || e.holes.norm() < OpenTuning::min_one_sided_share * hole)
+    if (hole <= OpenTuning::max_cap_share * e.area ||
+        e.holes.norm() < OpenTuning::min_one_sided_share * std::min(hole, e.area))
       continue;
     in_sheets += e.area;
     if (!first || e.area > first->area) first = &e;

@@ -30,7 +30,9 @@ struct OrientedSurface {
 
 /// Makes bodies of surfaces with open components, as the options ask.
 /// \throws InputError as clean_surface(), add_base() and thicken() do
-/// \throws UsageError if both a base and a thickness are asked for, or no surface is open
+/// \throws UsageError if both a base and a thickness are asked for, if that is not above 0, and if no surface
+/// is
+///   open
 void close_open_surfaces(std::vector<MaterialSurface>& surfaces, const OpenSurfaceOptions& options,
                          std::vector<Diagnostic>& findings);
 
@@ -38,8 +40,9 @@ void close_open_surfaces(std::vector<MaterialSurface>& surfaces, const OpenSurfa
 /// as large as they are, such as a terrain or a membrane, so that closing it encloses next to nothing.
 /// \param component by triangle
 /// \param rims find_rims() of the triangles
+/// \param has_lid by rim: a flat cap closes it that meets the surface at an angle
 void require_enclosing(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
                        const std::vector<Index>& component, const std::vector<HoleRim>& rims,
-                       const std::string& file);
+                       const std::vector<char>& has_lid, const std::string& file);
 
 }  // namespace tetwright

@@ -177,7 +177,7 @@ class PatchJoiner {
     std::vector<SurfaceRegion> groups = surfaces_[s.number].surface.groups;
     std::vector<Diagnostic> unused;
     const std::vector<SurfaceHole> holes =
-        close_flat_holes(copy, groups, surfaces_[s.number].file, {}, unused);
+        close_flat_holes(copy, groups, surfaces_[s.number].file, {.open = {.accept_sheets = true}}, unused);
     return std::all_of(holes.begin(), holes.end(), [](const SurfaceHole& hole) { return hole.flat; });
   }
 

@@ -141,15 +141,24 @@ std::vector<SurfaceHole> close_flat_holes(CleanedSurface& surface, std::vector<S
       component.push_back(c);
     }
   const std::vector<HoleRim> rims = find_rims(surface.points, triangles);
-  if (!options.open.accept_sheets) require_enclosing(surface.points, triangles, component, rims, file);
   std::vector<FlatCap> caps;
   if (options.close_flat) caps = find_flat_caps(surface.points, triangles, rims, component);
+  const double angle = degrees_of(options.feature_angle) * std::numbers::pi / 180;
+  const auto turns = [&](const FlatCap& cap) {
+    return turning_share(cap, rims, surface.points, triangles, angle) > Tuning::sharp_share;
+  };
+  if (!options.open.accept_sheets) {
+    // A lid on walls around it closes a body, however low these are.
+    std::vector<char> has_lid(rims.size(), 0);
+    for (const FlatCap& cap : caps)
+      for (const std::size_t r : cap.rims) has_lid[r] = cap.kept && turns(cap);
+    require_enclosing(surface.points, triangles, component, rims, has_lid, file);
+  }
   double area = 0;
   for (const Triangle& t : triangles) area += area_vector(surface.points, t).norm();
   std::vector<char> closed(rims.size(), 0);
   std::size_t edges = 0;
   std::optional<Vec3> place;
-  const double angle = degrees_of(options.feature_angle) * std::numbers::pi / 180;
   for (const FlatCap& cap : caps) {
     if (!cap.kept) continue;
     std::vector<const HoleRim*> own;
@@ -162,8 +171,7 @@ std::vector<SurfaceHole> close_flat_holes(CleanedSurface& surface, std::vector<S
     SurfaceHole& hole = holes.emplace_back(hole_of(own, cap.triangles, surface.points));
     hole.flat = true;
     hole.size = cap.vector.norm();
-    hole.sharp = hole.size >= Tuning::min_sharp_share * area &&
-                 turning_share(cap, rims, surface.points, triangles, angle) > Tuning::sharp_share;
+    hole.sharp = hole.size >= Tuning::min_sharp_share * area && turns(cap);
     if (hole.sharp && surface.groups.empty()) {
       groups.insert(groups.begin(), SurfaceRegion{});
       surface.groups.assign(surface.triangles.size(), 0);

@@ -42,6 +42,13 @@ class ShellBack {
 
  private:
   bool is_own(std::size_t t) const { return s_.closed[s_.component[t]] == 0; }
+  /// Whether rounding determines the normal of a triangle.
+  bool is_flat(std::size_t t) const {
+    const auto& [a, b, c] = s_.triangles[t];
+    const Vec3 u = s_.points[b] - s_.points[a], v = s_.points[c] - s_.points[a];
+    const double longest = std::max({u.squaredNorm(), v.squaredNorm(), (u - v).squaredNorm()});
+    return u.cross(v).norm() <= OpenTuning::min_height * longest;
+  }
 
   /// One point behind each fan of triangles around a point of the front.
   void find_points(const std::string& file) {
@@ -82,7 +89,7 @@ class ShellBack {
     std::vector<Eigen::Matrix3d> planes(size(), Eigen::Matrix3d::Zero());
     std::vector<Vec3> sums(size(), Vec3::Zero());
     for (std::size_t t = 0; t < s_.triangles.size(); ++t) {
-      if (!is_own(t)) continue;
+      if (!is_own(t) || is_flat(t)) continue;
       const Vec3 normal = area_vector(s_.points, s_.triangles[t]).normalized();
       for (std::size_t k = 0; k < 3; ++k) {
         const Vec3& at = s_.points[s_.triangles[t][k]];
@@ -111,7 +118,7 @@ class ShellBack {
     std::vector<char> is_bad(size(), 0);
     bool any = false;
     for (std::size_t t = 0; t < s_.triangles.size(); ++t) {
-      if (!is_own(t)) continue;
+      if (!is_own(t) || is_flat(t)) continue;
       const Vec3 a = position(number(t, 0)), b = position(number(t, 1)), c = position(number(t, 2));
       if ((b - a).cross(c - a).dot(area_vector(s_.points, s_.triangles[t])) > 0) continue;
       any = true;

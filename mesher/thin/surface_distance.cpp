@@ -31,6 +31,14 @@ SurfaceDistance::SurfaceDistance(std::span<const Vec3> points, std::span<const T
       middles[t] = corners[t][0] + corners[t][1] + corners[t][2];
     }
   });
+  const auto area_of = [&](std::size_t first, std::size_t last) {
+    double area = 0;
+    for (std::size_t t = first; t < last; ++t)
+      area += (corners[t][1] - corners[t][0]).cross(corners[t][2] - corners[t][0]).norm();
+    return area;
+  };
+  const bool caps_are_walls =
+      area_of(surface, count) <= DistanceTuning::Caps::max_wall_share * area_of(0, surface);
   const std::vector<Index> order = median_order(boxes, middles, DistanceTuning::Triangles::leaf_size);
   tree_ =
       BoxTree(count, DistanceTuning::Triangles::leaf_size, [&](std::size_t i) { return boxes[order[i]]; });
@@ -43,7 +51,9 @@ SurfaceDistance::SurfaceDistance(std::span<const Vec3> points, std::span<const T
       const Vec3 normal = (b - a).cross(c - a);
       const double length = normal.norm();
       normals_[i] = length > 0 ? Vec3(normal / length) : Vec3(Vec3::Zero());
-      parts_[i] = order[i] < closed ? Part::closed : order[i] < surface ? Part::open : Part::cap;
+      parts_[i] = order[i] < closed                      ? Part::closed
+                  : order[i] < surface || caps_are_walls ? Part::open
+                                                         : Part::cap;
     }
   });
   if (closed < surface) open_.emplace(points, triangles.subspan(closed));

@@ -19,7 +19,7 @@ struct SurfacePlace {
   /// Side of the surface on which the queried point lies: 1 outside, -1 inside, 0 if the triangle alone does
   /// not tell. Set by SurfaceDistance::nearest() only.
   int side = 0;
-  bool on_cap = false;  ///< of a hole
+  bool on_cap = false;  ///< of a hole, which is no wall
 };
 
 /// Exact distances from the triangles of a surface, its exact inside, and the distance from one wall to the
@@ -32,7 +32,8 @@ class SurfaceDistance {
   /// Coordinates and results are in voxels.
   /// \param closed number of triangles of closed components, which come first; none lies within another one
   ///   that is oriented alike and touches it
-  /// \param caps caps of the surface's holes, which count for distances but are no walls
+  /// \param caps caps of the surface's holes. If they have more than DistanceTuning::Caps::max_wall_share of
+  ///   its area, the surface is more of a sheet than a body: they count for distances then but are no walls
   /// \param intersects_itself parts of the surface lie inside others and are not walls
   SurfaceDistance(std::span<const Vec3> points, std::span<const Triangle> triangles, std::size_t closed,
                   const TriangleMesh& caps, bool intersects_itself);
@@ -41,7 +42,7 @@ class SurfaceDistance {
   /// most directly.
   std::optional<SurfacePlace> nearest(const Vec3& point, double at_most) const;
 
-  /// Whether no triangle but those of caps is nearer to a point than `radius`.
+  /// Whether no triangle but those of caps that are no walls is nearer to a point than `radius`.
   bool is_ball_empty(const Vec3& center, double radius) const;
 
   /// True where the winding numbers of the closed components (exact) and of the open ones (by a tree) add up
@@ -51,7 +52,7 @@ class SurfaceDistance {
   enum class Side { wall, gap };
   /// The thickness of the wall behind a surface point, or the width of the gap in front of it, at most
   /// `at_most`: the diameter of the largest ball that touches the point and contains no wall facing it (the
-  /// shrinking ball of Ma, Bae & Choi 2012, restricted). `at_most` on caps.
+  /// shrinking ball of Ma, Bae & Choi 2012, restricted). `at_most` on caps that are no walls.
   /// \param facing a wall faces the point if the cosine between their normals is below -`facing`, so that
   ///   neither the flanks of a convex edge nor noise count
   double thickness(const SurfacePlace& place, Side side, double facing, double at_most) const;

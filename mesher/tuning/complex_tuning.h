@@ -110,7 +110,7 @@ struct ComplexTuning {
     /// materials are thin, down to an eighth (DomainTuning::Refinement::max_levels).
     static constexpr double min_thickness = 1.25, min_refined_thickness = min_thickness / 8;
     /// Thickness below which the outside gives way at a line in which bodies touch, voxels; it falls to
-    /// nothing at `reach`. Between faces at right angles the bodies are then joined over 1.4 voxels on either
+    /// nothing at `reach`. Between faces at right angles the bodies are then joined over 1.5 voxels on either
     /// side: over less the strip tears.
     static constexpr double touching_thickness = 2.8;
     /// Distance over which narrow parts are looked for, voxels: that of sheets that need smaller cells

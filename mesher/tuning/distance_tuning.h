@@ -70,6 +70,10 @@ struct DistanceTuning {
 
   /// Holes of surfaces and the caps that close them.
   struct Caps {
+    /// Area of caps, as a share of the surface's, above which they are no walls. Caps of a box without its
+    /// lid and a side have .35, and need cells of their own where they meet it at sharp angles; those of a
+    /// rough terrain have .57, and are so near all of it that this takes ten times the cells.
+    static constexpr double max_wall_share = 0.5;
     /// Points with at least this generalised winding number are inside: one half plus more than the rounding
     /// error, so that the back of a flat sheet is consistently outside.
     static constexpr double inside_winding = 0.5001;

@@ -95,8 +95,8 @@ struct InputTuning {
     /// Area of a hole's projection onto the plane in which it is largest, as a share of its component's area.
     /// Above this a component is a sheet: a dome 1/4 as high as wide.
     static constexpr double max_cap_share = 0.8;
-    /// Least area of the projection of all holes of a component, as a share of the largest: below this, holes
-    /// face each other, as those of a short tube do.
+    /// Least area of the projection of all holes of a component, as a share of the largest and of its own
+    /// area: below this, holes face each other, as those of a short tube do.
     static constexpr double min_one_sided_share = 0.5;
     /// A surface with more of its area in sheets encloses nothing worth meshing.
     static constexpr double min_sheet_share = 0.5;
@@ -106,6 +106,9 @@ struct InputTuning {
     /// Least eigenvalue of the sum of the normals' outer products around a point, as a share of the largest:
     /// an edge that turns by 20 degrees. Below, normals differ by noise.
     static constexpr double min_turn = 0.03;
+    /// Least height of a triangle that has a normal, as a share of its longest edge: rounding of coordinates
+    /// turns lower ones.
+    static constexpr double min_height = 1e-7;
     /// Max length of an offset, in thicknesses: at edges that turn by 150 degrees.
     static constexpr double max_mitre = 4;
     /// Max rounds in which points follow those around them: what still turns over then crosses.

@@ -129,21 +129,20 @@ void SurfaceGrid::build(const EditableMesh& mesh) {
       }
     });
   }
-  Vec3 low = Vec3::Zero();
-  double smallest = HUGE_VAL, largest = 0;
-  bool first = true;
-  for (const MeshTriangle& t : records_) {
-    const Vec3 a = low_corner(t);
-    const double extent = (high_corner(t) - a).maxCoeff();
-    low = first ? a : low.cwiseMin(a);
-    first = false;
-    smallest = std::min(smallest, extent);
-    largest = std::max(largest, extent);
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();
+  double smallest = HUGE_VAL;
+  for (std::size_t i = 0; i < records_.size(); ++i) {
+    const Vec3 a = low_corner(records_[i]), b = high_corner(records_[i]);
+    low = i == 0 ? a : low.cwiseMin(a);
+    high = i == 0 ? b : high.cwiseMax(b);
+    smallest = std::min(smallest, (b - a).maxCoeff());
   }
+  const double all = (high - low).maxCoeff();
+  smallest = std::max(smallest, std::ldexp(all, -Grid::max_ratio));
   origin_ = low;
-  smallest = std::max(smallest, std::ldexp(largest, -Grid::max_ratio));
-  to_cell_ = largest > 0 ? 1 / (Grid::smallest_cell * smallest) : 1;
-  top_level_ = std::max(0, largest > 0 ? std::ilogb(largest * to_cell_) / 2 + 1 + Grid::spare_levels : 0);
+  to_cell_ = all > 0 ? 1 / (Grid::smallest_cell * smallest) : 1;
+  // A cell of the top level is as large as the whole surface.
+  top_level_ = all * to_cell_ < 1 ? 0 : std::ilogb(all * to_cell_) / 2 + 1;
   const std::size_t slots = std::bit_ceil(std::max<std::size_t>(64, records_.size() / 2));
   mask_ = static_cast<std::uint32_t>(slots - 1);
   cells_.clear();

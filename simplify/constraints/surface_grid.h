@@ -192,7 +192,7 @@ class SurfaceGrid {
   const EditableMesh* mesh_ = nullptr;  ///< maps copies of a point to their original
   Vec3 origin_ = Vec3::Zero();
   double to_cell_ = 1;  ///< of level 0
-  int top_level_ = 0;   ///< larger triangles touch more of its cells
+  int top_level_ = 0;   ///< of cells as large as the surface when the grid was built
   std::uint32_t mask_ = 0;
   std::vector<Cell> cells_;            ///< by slot
   std::vector<MeshTriangle> records_;  ///< ids ascending, points in the same order

@@ -77,14 +77,11 @@ struct SimplifyTuning {
 
   /// The grid of surface triangles.
   struct Grid {
-    /// Max ratio of the sizes of triangles, as a power of 2: smaller ones count as being of this size, so
-    /// that a few tiny ones add no levels.
-    static constexpr int max_ratio = 12;
+    /// Max ratio of the surface's size to that of triangles, as a power of 2: smaller ones count as being of
+    /// this size, so that a few tiny ones add no levels.
+    static constexpr int max_ratio = 16;
     /// Cells of the lowest level, in the smallest triangles. Half as many mean more levels and 5 % more time.
     static constexpr double smallest_cell = 8;
-    /// Levels above those of the triangles when the grid is built: until it is built again, triangles may
-    /// grow by more than a factor of four.
-    static constexpr int spare_levels = 1;
     /// Two triangles count as nearly folded together if the cosine of the angle between them at their common
     /// edge exceeds this. Its 120 degrees are wide enough that no operation passes undetected, and most edges
     /// are flatter.

@@ -164,20 +164,18 @@ TEST(Mesher, RefusesWhatCannotBeMeshed) {
   MesherOptions options;
   options.voxel_size = 10;
   EXPECT_THROW(mesh_of(make_sphere(1), options), NothingToMeshError);
-  // An open surface that encloses nothing fails for any size of cells.
+  // An open surface that encloses nothing fails for any size of cells: a square, and two at right angles.
   TriangleMesh open;
-  open.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
-  open.triangles = {{0, 1, 2}, {1, 3, 2}};
-  for (const auto& [height, said] :
-       std::map<double, std::string>{{0, "the surface lies in a plane and encloses nothing"},
-                                     {0.1, "the surface is not closed and encloses nothing"}}) {
-    open.points[3][2] = height;
+  open.points = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}, {1, 0, 1}};
+  open.triangles = {{0, 1, 2}, {0, 2, 3}};
+  for (const char* said : {"body.ply: encloses nothing", "the surface is not closed and encloses nothing"}) {
     try {
       mesh_of(open);
       FAIL() << said;
     } catch (const InputError& e) {
       EXPECT_NE(std::string(e.what()).find(said), std::string::npos) << e.what();
     }
+    open.triangles.insert(open.triangles.end(), {{0, 4, 5}, {0, 5, 1}});
   }
   // A sheet without thickness: nothing is inside.
   TriangleMesh sheet;

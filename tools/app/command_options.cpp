@@ -182,7 +182,7 @@ void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) 
                "Mesh the outside too, up to a box, as the material 'outside' with tag 0");
   app.add_flag("--accept-changes", c.options.acceptance.accept_changes,
                "If the volume, components, handles or cavities differ from those of the surfaces: a note "
-               "instead of status 1");
+               "instead of status 1. Open sheets, which enclose next to nothing, are closed all the same");
   add_strict(app, c);
   app.add_option("--write-sdf", c.outputs.distances,
                  "Write the meshed signed distances to this .vdb file, with thin walls as thick as the cells "

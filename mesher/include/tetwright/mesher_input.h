@@ -195,7 +195,7 @@ using BaseHeight = std::optional<double>;
 struct OpenSurfaceOptions {
   /// Open surfaces are height fields, the tops of blocks with vertical walls and a flat base.
   std::optional<BaseHeight> base = {};
-  /// Open surfaces are the fronts of shells of this thickness, input units, which lie behind them.
+  /// Open surfaces are the fronts of shells of this thickness, above 0, input units, which lie behind them.
   std::optional<double> thickness = {};
   /// Surfaces that are mainly sheets, with one hole almost as large as they are, are closed like others
   /// instead of refused.
@@ -330,10 +330,11 @@ enum class SurfaceFlaw : std::uint8_t {
 ///   fields that overhang and shells that cross themselves; for surfaces that cannot be joined, bodies that
 ///   cross with OverlapRule::error; for sheets and partitions that are closed, meet others or are in no body;
 ///   for coordinates too large or a size too small for areas and volumes in double precision
-/// \throws UsageError for no surface, a base or thickness but no open surface, a base above the surface,
-/// sheets together with layers, two materials of one name or tag, a layer
-///   whose thickness is not above 0, more than 60,000 materials, a seed that is in no cell or whose cell
-///   another one names, or a name for a cap that is taken or far from all holes
+/// \throws UsageError for no surface; for both a base and a thickness, either without an open surface, a base
+///   that is not below the surface, a thickness that is not above 0; for sheets together with layers, two
+///   materials of one name or tag, a layer whose thickness is not above 0, more than 60,000 materials, a seed
+///   that is in no cell or whose cell another one names, or a name for a cap that is taken or far from all
+///   holes
 MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector<MaterialLayer> layers = {},
                               NestedRule nested = NestedRule::automatic, const ContactOptions& contact = {},
                               const RegionOptions& regions = {}, Progress* progress = nullptr,

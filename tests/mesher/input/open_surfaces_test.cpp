@@ -90,7 +90,13 @@ bool is_whole(const MesherInput& input) {
 }
 
 TEST(OpenSurfaces, SheetsEncloseNothing) {
-  for (const TriangleMesh& mesh : {field(hills), field([](double, double) { return 0; }), gutter(90)}) {
+  TriangleMesh frame = field(hills, 16);
+  std::erase_if(frame.triangles, [&](const Triangle& t) {
+    const Vec3 middle = (frame.points[t[0]] + frame.points[t[1]] + frame.points[t[2]]) / 3;
+    return std::max(std::abs(middle.x() - 0.5), std::abs(middle.y() - 0.5)) < 0.375;
+  });
+  for (const TriangleMesh& mesh :
+       {field(hills), field([](double, double) { return 0; }), gutter(90), frame}) {
     const std::string why = refusal(mesh);
     EXPECT_TRUE(contains(why, "encloses nothing")) << why;
     EXPECT_TRUE(contains(why, "--base auto") && contains(why, "--thicken D")) << why;
@@ -111,6 +117,12 @@ TEST(OpenSurfaces, SurfacesWithHolesEncloseABody) {
     return ring.points[t[0]].z() == ring.points[t[1]].z() && ring.points[t[0]].z() == ring.points[t[2]].z();
   });
   EXPECT_EQ(refusal(ring), "");
+  // A tray: the lid is exact.
+  TriangleMesh tray = make_box({0, 0, 0}, {1, 1, 0.05});
+  std::erase_if(tray.triangles, [&](const Triangle& t) {
+    return std::all_of(t.begin(), t.end(), [&](Index p) { return tray.points[p].z() == 0.05; });
+  });
+  EXPECT_EQ(refusal(tray), "");
 }
 
 TEST(OpenSurfaces, ABaseMakesABlock) {
@@ -131,6 +143,22 @@ TEST(OpenSurfaces, ABaseIsATenthOfTheWidthBelowByDefault) {
   EXPECT_NEAR(input_of(top, with_base()).low.z(), -0.3, 1e-12);
 }
 
+TEST(OpenSurfaces, ABlockMayBeThinAndHaveSteps) {
+  const TriangleMesh flat = field([](double, double) { return 0; });
+  EXPECT_NEAR(input_of(flat, with_base(-0.001)).bodies[0].surface.volume, 0.001, 1e-12);
+  // A stair: its riser is vertical, also at the rim.
+  TriangleMesh stair;
+  for (const auto& [x, z] : {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {2.0, 1.0}})
+    for (const double y : {0.0, 1.0}) stair.points.emplace_back(x, y, z);
+  for (Index k = 0; k < 6; k += 2) {
+    stair.triangles.push_back({k, k + 2, k + 3});
+    stair.triangles.push_back({k, k + 3, k + 1});
+  }
+  const MesherInput input = input_of(stair, with_base(-1.0));
+  EXPECT_TRUE(is_whole(input));
+  EXPECT_NEAR(input.bodies[0].surface.volume, 3, 1e-12);
+}
+
 TEST(OpenSurfaces, HolesOfAHeightFieldStayHoles) {
   TriangleMesh top = field(hills);
   std::erase_if(top.triangles,
@@ -144,7 +172,7 @@ TEST(OpenSurfaces, HolesOfAHeightFieldStayHoles) {
 TEST(OpenSurfaces, ABaseIsRefusedWithThePlace) {
   TriangleMesh bent = field(hills);
   for (Vec3& p : bent.points) p.x() += 2 * std::max(0.0, 0.3 - (p - Vec3(0.5, 0.5, p.z())).norm());
-  EXPECT_TRUE(contains(refusal(bent, with_base()), "overhangs at (0."));
+  EXPECT_TRUE(contains(refusal(bent, with_base()), "overhangs at ("));
   const std::string above = refusal(field(hills), with_base(0.0));
   EXPECT_TRUE(contains(above, "--base 0 is not below the surface")) << above;
   // A ramp that winds above itself.
@@ -174,6 +202,12 @@ TEST(OpenSurfaces, AShellHasItsThicknessEverywhere) {
   EXPECT_NEAR(l.bodies[0].surface.volume, 0.21, 1e-12);
   EXPECT_NEAR(l.low.z(), -0.1, 1e-12);
   EXPECT_NEAR(l.low.y(), -0.1, 1e-12);
+
+  // The same with a triangle without area on the fold.
+  TriangleMesh split = fold;
+  split.points.emplace_back(0.5, 0, 0);
+  split.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 4, 5}, {0, 5, 6}, {6, 5, 1}, {0, 6, 1}};
+  EXPECT_NEAR(input_of(split, thick(0.1)).bodies[0].surface.volume, 0.21, 1e-9);
 
   const MesherInput bent = input_of(gutter(90), thick(0.2));
   EXPECT_TRUE(is_whole(bent));
@@ -206,6 +240,11 @@ TEST(OpenSurfaces, ShellsThatCrossThemselvesAreRefusedWithThePlace) {
 TEST(OpenSurfaces, OptionsForOpenSurfacesNeedSome) {
   EXPECT_TRUE(contains(refusal(unit_cube(), with_base()), "--base is for open surfaces"));
   EXPECT_TRUE(contains(refusal(unit_cube(), thick(0.1)), "--thicken is for open surfaces"));
+  for (const double thickness : {0.0, -0.1, std::nan("")})
+    EXPECT_TRUE(contains(refusal(field(hills), thick(thickness)), "must be above 0"));
+  TriangleMesh wall = field(hills);
+  for (Vec3& p : wall.points) p = {0, p.x(), p.y()};
+  EXPECT_TRUE(contains(refusal(wall, with_base()), "the surface is vertical"));
   EXPECT_TRUE(
       contains(refusal(field(hills), {.base = BaseHeight(), .thickness = 0.1}), "leave one of them out"));
 }

@@ -88,7 +88,8 @@ TEST(SurfaceHoles, BothEndsOfAThickTubeAreRings) {
 TEST(SurfaceHoles, CapsThatEncloseNothingOrMeetTheSurfaceAreLeftOut) {
   // A square, and a box with a ball through its open side.
   EXPECT_FALSE(is_closed(
-      input_of(without(make_box(Vec3(0, 0, 0), Vec3(1, 1, 1)), [](const Vec3& p) { return p.z() != 0; }))));
+      input_of(without(make_box(Vec3(0, 0, 0), Vec3(1, 1, 1)), [](const Vec3& p) { return p.z() != 0; }),
+               {.open = {.accept_sheets = true}})));
   const MesherInput pierced =
       input_of(joined(open_box(Vec3(0, 0, 0), Vec3(3, 3, 3)), make_sphere(1, Vec3(1.5, 1.5, 3))));
   ASSERT_EQ(pierced.holes.size(), 1U);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <utility>
 
 #include "common/random.h"
 #include "tests/mesher/test_surfaces.h"
@@ -51,6 +52,31 @@ TEST(SurfaceDistance, NearestPlaceOfManyPoints) {
     EXPECT_GT(place->normal.dot(place->point), 0);
     EXPECT_FALSE(distance.nearest(p, 0.9 * (place->point - p).norm()));
     EXPECT_EQ(distance.inside(p), p.norm() < 2 - 0.01 || (p.norm() < 2 && distance.inside(p)));
+  }
+}
+
+/// A square of this side in a plane of constant z, facing up or down.
+TriangleMesh square(double side, double z, bool up) {
+  TriangleMesh mesh;
+  mesh.points = {{0, 0, z}, {side, 0, z}, {side, side, z}, {0, side, z}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return up ? mesh : turned_over(std::move(mesh));
+}
+
+TEST(SurfaceDistance, LargeCapsAreNoWalls) {
+  const TriangleMesh sheet = square(10, 0, true);
+  for (const double side : {6.0, 8.0}) {
+    const TriangleMesh cap = square(side, -0.5, false);
+    const SurfaceDistance distance{sheet.points, sheet.triangles, 0, cap, false};
+    const bool is_wall = side * side < 50;
+    const auto above = distance.nearest({3, 3, 0.1}, 1), below = distance.nearest({3, 3, -0.6}, 1);
+    ASSERT_TRUE(above && below);
+    EXPECT_NEAR(below->point.z(), -0.5, 1e-12);
+    EXPECT_EQ(below->on_cap, !is_wall);
+    EXPECT_FALSE(above->on_cap);
+    for (const SurfacePlace& place : {*above, *below})
+      EXPECT_NEAR(distance.thickness(place, Side::wall, 0.7, 2), is_wall ? 0.5 : 2, 1e-9) << side;
+    EXPECT_EQ(distance.is_ball_empty({3, 3, -0.75}, 0.5), !is_wall);
   }
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simplify/constraints/surface_grid.h"
 
+#include <cmath>
+
+#include "common/random.h"
 #include "tests/simplify/workbench.h"
 
 namespace tetwright::surface_grid_test {
@@ -67,25 +70,45 @@ TEST(SurfaceGrid, AHarmlessTriangleReplacesAnother) {
   EXPECT_FALSE(w.grid.test(through));
 }
 
-// A large triangle is in cells of a higher level than those it crosses, and the other way round.
+/// A triangle of about this size near a point.
+MeshTriangle random_triangle(Random& random, const Triangle& ids, const Vec3& near, double size) {
+  MeshTriangle t{ids, {}};
+  for (Vec3& p : t.points)
+    p = near + size * Vec3(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
+  return t;
+}
+
+// Triangles are in cells of levels by their size: whatever the sizes, the grid finds what a test of all pairs
+// finds.
 TEST(SurfaceGrid, TrianglesOfAllSizesAreFound) {
-  Workbench w(grid_mesh(6));
+  Workbench w(grid_mesh(4));
   const double s = w.mesh.space().scale();
-  const Vec3 middle = Vec3(3, 3, 6) * s;
-  for (const double size : {1e-3, 0.02, 0.3, 2.0, 40.0}) {
-    const auto crosses = [&](double height) {
-      SurfaceGrid::Edit edit;
-      edit.removed = {boundary_triangle(w)};
-      const Vec3 at = middle + Vec3(0.11, 0.07, height) * s;
-      edit.added = {{{edit.removed[0].ids,
-                      {at - Vec3(size, 0, size) * s, at + Vec3(size, 0.1 * size, -size) * s,
-                       at + Vec3(0, 0, size) * s}},
-                     0}};
-      return !w.grid.test(edit);
-    };
-    EXPECT_TRUE(crosses(0)) << size;
-    EXPECT_FALSE(crosses(1.1 * size)) << size;
+  Random random(3);
+  const auto size = [&] { return s * std::pow(10, 5 * random.uniform() - 3); };
+  const auto place = [&] { return Vec3(random.uniform(), random.uniform(), random.uniform()) * 8 * s; };
+  std::size_t hits = 0, misses = 0;
+  for (int round = 0; round < 400; ++round) {
+    // Replaces a boundary triangle, or one that was added earlier, where that intersects nothing.
+    const std::vector<MeshTriangle> all = w.grid.triangles();
+    const MeshTriangle removed =
+        all[static_cast<std::size_t>(random.uniform() * static_cast<double>(all.size()))];
+    const double own = size();
+    const MeshTriangle added = random_triangle(random, removed.ids, place(), own);
+    bool expected = true;
+    for (const MeshTriangle& other : all)
+      expected &= other.ids == removed.ids || !triangles_intersect(added, other);
+    SurfaceGrid::Edit edit;
+    edit.removed = {removed};
+    edit.added = {{added, 0}};
+    ASSERT_EQ(w.grid.test(edit), expected) << round << " " << own / s;
+    ++(expected ? misses : hits);
+    if (!expected) continue;
+    w.grid.take_records(edit);
+    w.grid.commit(edit);
+    w.grid.end_batch();
   }
+  EXPECT_GT(hits, 50u);
+  EXPECT_GT(misses, 50u);
 }
 
 TEST(SurfaceGrid, AddedTrianglesAreTestedAgainstEachOther) {
