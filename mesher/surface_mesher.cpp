@@ -269,7 +269,9 @@ class SurfaceMeshing {
     budget_.max_possible = max_possible_refinement(voxels_, largest_coordinate(input_));
     budget_.base_tets =
         std::max(CellTuning::WallBudget::min_cheap_tets, static_cast<double>(report_.estimate.tets));
-    budget_.max_tets = std::max(CellTuning::WallBudget::max_added_tets, budget_.base_tets);
+    budget_.max_tets =
+        std::max(options_.max_thin_tets > 0 ? options_.max_thin_tets : CellTuning::WallBudget::max_added_tets,
+                 budget_.base_tets);
   }
 
   /// The signed distance of each region, with cells for narrow patches, thin walls and requested sizes.

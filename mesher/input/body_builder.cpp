@@ -142,7 +142,7 @@ std::vector<BodyBuilder::ClosedSurface> BodyBuilder::close_holes(std::vector<Mat
   std::vector<ClosedSurface> closed;
   std::vector<SurfaceHole>& holes = input_.holes;
   CapOptions options = caps_;
-  // Of surfaces that nearly close together, meshing says what is missing.
+  // Meshing says what is missing of surfaces that nearly close together.
   options.open.accept_sheets |= has_code(input_.findings, DiagnosticCode::surfaces_not_joined);
   Vec3 low = Vec3::Constant(INFINITY), high = Vec3::Constant(-INFINITY);
   for (std::size_t i = 0; i < surfaces.size(); ++i) {

@@ -104,17 +104,23 @@ CellWalls measure(const SurfaceDistance& surface, const Voxel& cell, int depth, 
   return found;
 }
 
+/// True for a gap that no cell resolves.
+bool stays_closed(const CellWalls& walls) {
+  return walls.thin && walls.gap &&
+         walls.thickness < std::ldexp(Walls::min_shown_cells, -max_wall_refinement);
+}
+
 /// Calls `visit(cell, depth, walls, split)` for the cells of a voxel that contain a surface, each split cell
-/// before its parts. Cells are split while they are thin and above `max_depth`.
+/// before its parts. Cells are split while they are thin and above `max_depth`, unless they stay closed.
 template <class Visit>
 void descend(const SurfaceDistance& surface, const Voxel& cell, int depth, int max_depth,
              const Visit& visit) {
   const double side = std::ldexp(1, -depth), enough = Walls::min_shown_cells * side;
   const CellWalls walls = measure(surface, cell, depth, Walls::facing_to_refine, {enough, enough});
   if (!walls.near) return;
-  const bool thin = walls.thin;
-  visit(cell, depth, walls, thin);
-  if (!thin || depth == max_depth) return;
+  const bool split = walls.thin && depth < max_depth && !stays_closed(walls);
+  visit(cell, depth, walls, split);
+  if (!split) return;
   for (int k = 0; k < 8; ++k) descend(surface, child(cell, k), depth + 1, max_depth, visit);
 }
 
@@ -186,16 +192,19 @@ void count_cells(LocalThickness& measured) {
     std::uint32_t region;
     int depth;
     int needed;  ///< depth that resolves it
-    bool gap;
+    bool gap, thin;
+    bool closed;  ///< whatever the depth
   };
   const std::vector<Cell> cells = parallel_collect<Cell>(
       0, measured.voxels.size(), DistanceGrains::measured_voxels,
       [&](std::size_t begin, std::size_t end, std::vector<Cell>& out) {
         for (std::size_t v = begin; v < end; ++v)
           descend(*measured.surface, morton_decode(measured.voxels[v]), 0, WallCells::counted_depth,
-                  [&](const Voxel& cell, int depth, const CellWalls& walls, bool thin) {
-                    int needed = depth + thin;
-                    if (thin && depth == WallCells::counted_depth) {
+                  [&](const Voxel& cell, int depth, const CellWalls& walls, bool split) {
+                    int needed = depth + split;
+                    const bool closed = stays_closed(walls);
+                    if (walls.thin && !closed && depth == WallCells::counted_depth) {
+                      needed = depth + 1;
                       // Tips of wedges are thin in cells of any size, so only parallel walls are refined
                       // further.
                       const double side = std::ldexp(1, -depth);
@@ -209,7 +218,7 @@ void count_cells(LocalThickness& measured) {
                       else
                         needed = depth;
                     }
-                    out.push_back({measured.region[v], depth, needed, walls.gap});
+                    out.push_back({measured.region[v], depth, needed, walls.gap, walls.thin, closed});
                   });
       });
   // For each region, the number of cells that need each depth or more.
@@ -224,6 +233,17 @@ void count_cells(LocalThickness& measured) {
       --needed;
     return needed;
   };
+  for (LocalThickness::Region& region : measured.regions) region.has_walls = false;
+  for (const Cell& c : cells) {
+    LocalThickness::Region& region = measured.regions[c.region];
+    region.has_walls |= c.thin && !c.gap;
+    if (!c.thin || !c.gap) continue;
+    // Deeper cells count for themselves, down to the depth that is counted.
+    const int last = c.closed                             ? max_wall_refinement
+                     : c.depth < WallCells::counted_depth ? c.depth
+                                                          : c.needed - 1;
+    for (int d = c.depth; d <= last; ++d) region.closed[d] += std::ldexp(1, -2 * c.depth);
+  }
   for (Cell c : cells) {
     c.needed = worth(c);
     if (c.depth > c.needed) continue;  // inside a cell that is not split
@@ -315,6 +335,10 @@ void choose_depths(const std::vector<LocalThickness*>& all_measured, const Refin
   double left = budget.max_tets;
   for (LocalThickness::Region* r : regions) {
     while (r->depth > 0 && added(*r, r->depth) > left) --r->depth;
+    const auto opens_more = [&](int depth) {
+      return r->has_walls || r->closed[depth] <= WallCells::max_left_closed * r->closed[depth - 1];
+    };
+    while (r->depth > std::min(r->asked, budget.max_possible) && !opens_more(r->depth)) --r->depth;
     left -= added(*r, r->depth);
   }
 }
@@ -367,9 +391,10 @@ ThinWallPlan plan_thin_walls(const LocalThickness& measured) {
           const int max_depth = measured.regions[region].depth;
           const double min_shown = std::ldexp(Walls::min_shown_cells, -max_depth);
           descend(*measured.surface, morton_decode(measured.voxels[v]), 0, max_depth,
-                  [&](const Voxel& cell, int depth, const CellWalls&, bool thin) {
-                    if (thin && depth < max_depth) found[task].cells.push_back({depth, morton_encode(cell)});
-                    if (thin && depth < max_depth) return;
+                  [&](const Voxel& cell, int depth, const CellWalls& walls, bool split) {
+                    if (split) found[task].cells.push_back({depth, morton_encode(cell)});
+                    if (split) return;
+                    const bool thin = walls.thin;
                     const double side = std::ldexp(1, -depth);
                     // Area of one side. If the wall is thinner than a cell, both sides are in the cell.
                     const auto area_of = [&](double thickness) {

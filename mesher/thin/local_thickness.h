@@ -22,9 +22,12 @@ struct LocalThickness {
   struct Region {
     /// Predicted dense tets of the region, by the number of halvings allowed where it needs them.
     std::array<double, max_wall_refinement + 1> tets{};
-    int needed = 0;  ///< halvings that would resolve all of it
-    int asked = 0;   ///< halvings requested for other reasons
-    int depth = 0;   ///< halvings chosen
+    /// Area in which gaps are too thin, squared voxels, by the number of halvings.
+    std::array<double, max_wall_refinement + 1> closed{};
+    bool has_walls = true;  ///< walls are thin, too
+    int needed = 0;         ///< halvings that would resolve all of it
+    int asked = 0;          ///< halvings requested for other reasons
+    int depth = 0;          ///< halvings chosen
   };
 
   std::shared_ptr<const SurfaceDistance> surface;  ///< in voxels; null if nothing is thin
@@ -59,7 +62,8 @@ struct RefinementBudget {
   double max_tets = 0;   ///< limit for all regions together
 };
 
-/// Chooses the depth of each region as a whole, the cheapest regions first, within the budget.
+/// Chooses the depth of each region as a whole, the cheapest regions first, within the budget. Where only
+/// gaps are thin, a depth must open a part of what the one before leaves closed.
 void choose_depths(const std::vector<LocalThickness*>& all_measured, const RefinementBudget& budget);
 
 /// A region where walls are thickened or omitted, or gaps closed.

@@ -142,6 +142,9 @@ struct DistanceTuning {
     /// is not refined. One with fewer cells too thin for counted_depth than the second is not refined beyond
     /// that depth.
     static constexpr std::size_t min_thin_voxels = 4, min_deep_cells = 64;
+    /// A further halving of cells at gaps must leave at most this share of the area closed that was closed
+    /// before it: ends of gaps alone open by a few percent at each.
+    static constexpr double max_left_closed = 0.75;
     /// Dense tets per finest cell that contains a surface (1.7 cells per squared cell of area). A wall has
     /// such cells on both sides and little else; a gap has a thick part on both sides. Fitted to plates and
     /// gaps.

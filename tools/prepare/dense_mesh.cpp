@@ -70,6 +70,12 @@ DenseMesh mesh_input(const MesherInput& surfaces, PrepareRun& run) {
   options.min_thickness = in_input_units(cells.min_thickness, diagonal);
   const bool choose = !cells.resolution && !cells.size;
   const RequestedSizes& sizes = run.report.sizes;
+  // Tets that thin walls and gaps may add for each of the result, and bounds of their number. A gap of .01
+  // between boxes of size 1 stays open at 10,000 tets with some 3.5 million.
+  constexpr double thin_tets_share = 400, min_thin_tets = 2e6, max_thin_tets = 8e6;
+  if (choose && target.tets && !cells.max_refinement)
+    options.max_thin_tets =
+        std::clamp(thin_tets_share * static_cast<double>(*target.tets), min_thin_tets, max_thin_tets);
   if (choose && target.tets)
     options.resolution = resolution_for_target(surfaces, *target.tets, run.options.feature_angle);
   if (choose && run.task == Task::prepare)

@@ -196,16 +196,16 @@ void find_thin_walls(PrepareRun& run) {
   }
   if (text.empty()) return;
   const bool finer = !options.cells.uniform && options.cells.max_refinement.value_or(0) < max_wall_refinement;
-  report.diagnostics.push_back({.code = DiagnosticCode::thin_walls_changed,
-                                .file = report.inputs.front(),
-                                .what = "too thin for cells: " + text,
-                                .remedy = std::string("raise --resolution") +
-                                          (finer ? " or --max-refinement" : "") +
-                                          ", or accept it with --accept-changes",
-                                .asked = 0,
-                                .reached = static_cast<double>(report.mesher->closed_gaps.size() + t.points),
-                                .limited_by = "the size of the cells",
-                                .places = places});
+  report.diagnostics.push_back(
+      {.code = DiagnosticCode::thin_walls_changed,
+       .file = report.inputs.front(),
+       .what = "too thin for cells: " + text,
+       .remedy = std::string("raise ") + (options.target.tets ? "--target-tets, " : "") + "--resolution" +
+                 (finer ? " or --max-refinement" : "") + ", or accept it with --accept-changes",
+       .asked = 0,
+       .reached = static_cast<double>(report.mesher->closed_gaps.size() + t.points),
+       .limited_by = "the size of the cells",
+       .places = places});
 }
 
 /// Reports faces between what only meets in a curve.

@@ -34,6 +34,9 @@ struct MesherOptions {
   /// How many times cells are halved where walls and gaps of a surface are thin, 0 to 8. Default: 3, and up
   /// to 8 if that at most doubles the number of tets.
   std::optional<int> max_refinement;
+  /// Max number of tets that thin walls and gaps may add, or the number of tets without them if that is more
+  /// (at least a million). 0: 8 million.
+  double max_thin_tets = 0;
   /// Gaps of a surface narrower than this are closed, walls thinner than this omitted; input units.
   double min_gap = 0, min_thickness = 0;
   /// Additional points around which cells are halved, input units: up to max_refinement times, limited so

@@ -203,7 +203,7 @@ TEST(OpenSurfaces, AShellHasItsThicknessEverywhere) {
   EXPECT_NEAR(l.low.z(), -0.1, 1e-12);
   EXPECT_NEAR(l.low.y(), -0.1, 1e-12);
 
-  // The same with a triangle without area on the fold.
+  // A triangle without area on the fold changes nothing.
   TriangleMesh split = fold;
   split.points.emplace_back(0.5, 0, 0);
   split.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 4, 5}, {0, 5, 6}, {6, 5, 1}, {0, 6, 1}};

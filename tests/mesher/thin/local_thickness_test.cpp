@@ -243,6 +243,23 @@ TEST(ThinWalls, TheBudgetGoesToWholeRegionsTheCheapestFirst) {
   EXPECT_EQ(measured.regions[1].depth, 2);
 }
 
+TEST(ThinWalls, ADepthThatOpensNothingMoreIsNotChosen) {
+  LocalThickness measured;
+  measured.regions = {region(10, 3), region(10, 3), region(10, 3)};
+  // A gap that opens with two halvings, one that hardly does, and a wall beside that.
+  measured.regions[0].closed = {100, 98, 3, 2};
+  measured.regions[1].closed = {100, 95, 90, 86};
+  measured.regions[2].closed = measured.regions[1].closed;
+  for (const std::size_t r : {0, 1}) measured.regions[r].has_walls = false;
+  choose_depths({&measured}, {3, max_wall_refinement, false, 50, 1e9});
+  EXPECT_EQ(measured.regions[0].depth, 3);
+  EXPECT_EQ(measured.regions[1].depth, 0);
+  EXPECT_EQ(measured.regions[2].depth, 3);
+  measured.regions[1].asked = 2;
+  choose_depths({&measured}, {3, max_wall_refinement, false, 50, 1e9});
+  EXPECT_EQ(measured.regions[1].depth, 2);
+}
+
 TEST(ThinWalls, CellsOfTwoListsAreCombined) {
   RefinementRegions a, b;
   a.refinement = 2;
