@@ -7,7 +7,7 @@
 
 #include "mesher/level_sets/level_set_field.h"
 #include "mesher/sizing/narrow_patches.h"
-#include "mesher/thin/local_thickness.h"
+#include "mesher/thin/refinement_depths.h"
 #include "tetwright/mesher_input.h"
 #include "tetwright/progress.h"
 #include "tetwright/surface_mesh.h"

@@ -41,8 +41,7 @@ CreaseLabels::CreaseLabels(TetMesh& mesh, const FeatureSurface& surface, double 
   split_chords(chords);
   snap_points();
   resolve_rest();
-  // Before islands dissolve: a split leaves the point in its patch.
-  split_chords_of_creases();
+  split_chords_of_creases();  // before islands dissolve, since it leaves points in their patches
   take_kinks();
   dissolve_islands();
 }

@@ -55,7 +55,11 @@ class Columns {
  public:
   explicit Columns(OrientedSurface& s) : s_(s) {}
 
-  void add(Index point) { columns_[key(point)].push_back(point); }
+  /// Adds a point unless it is known.
+  void add(Index point) {
+    std::vector<Index>& column = columns_[key(point)];
+    if (std::find(column.begin(), column.end(), point) == column.end()) column.push_back(point);
+  }
   /// Adds a point of the base below each column.
   void add_feet(double height) {
     for (auto& [xy, column] : columns_) {
@@ -130,6 +134,7 @@ Diagnostic add_base(OrientedSurface& s, const std::string& file, const BaseHeigh
   for (const HoleRim& rim : tops)
     for (const auto& [a, b] : rim.edges) {
       columns.add(a);
+      columns.add(b);
       ++edges;
     }
   columns.add_feet(height);

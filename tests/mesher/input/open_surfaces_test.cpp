@@ -188,6 +188,12 @@ TEST(OpenSurfaces, ABaseIsRefusedWithThePlace) {
   }
   const std::string winding = refusal(ramp, with_base());
   EXPECT_TRUE(contains(winding, "cross each other or the surface at (")) << winding;
+  // Three sheets at an edge whose borders end at its ends: more edges end at a point of the rim than start
+  // there.
+  TriangleMesh three;
+  three.points = {{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {-1, 0, 1}, {-1, 0, 2}};
+  three.triangles = {{0, 2, 1}, {0, 1, 3}, {0, 1, 4}};
+  EXPECT_NE(refusal(three, with_base()), "");
 }
 
 TEST(OpenSurfaces, AShellHasItsThicknessEverywhere) {

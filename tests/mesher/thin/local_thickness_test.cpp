@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "common/geometry/self_intersection.h"
+#include "mesher/thin/refinement_depths.h"
 #include "tests/mesher/fields.h"
 #include "tetwright/error.h"
 #include "tetwright/mesher.h"
