@@ -5,6 +5,7 @@
 #include <memory>
 #include <unordered_set>
 
+#include "common/geometry/distance_tree.h"
 #include "common/geometry/morton.h"
 #include "common/geometry/surface_tree.h"
 #include "mesher/domain/grid_frame.h"
@@ -30,6 +31,92 @@ struct Sample {
   Vec3 place, normal;  ///< finest cells; outward normal
 };
 
+/// Signed distances at the grid points around a sample. Each is computed at most once: the cells around a
+/// sample share most of their corners, as do levels and both kinds of flatness.
+class NearSample {
+ public:
+  explicit NearSample(const DistanceTree& tree) : tree_(tree) {}
+
+  void move_to(const Sample& sample) {
+    sample_ = sample;
+    for (int a = 0; a < 3; ++a) origin_[a] = static_cast<int>(std::floor(sample.place[a])) - radius;
+    distances_.assign(width * width * width, -1);
+    heights_.assign(width * width * width, 0);
+  }
+
+  /// True if a cell of this level around the sample is possible, and so are its neighbours along the surface.
+  /// Compares trilinear interpolation between the corners with the distances, as the octree does.
+  /// \param plane require that the surface is a plane there
+  bool is_flat(int level, double adaptivity, bool plane) {
+    const Vec3 first = sample_.normal.unitOrthogonal(), second = sample_.normal.cross(first);
+    const double side = 1 << level;
+    for (const Vec3& step : {Vec3(Vec3::Zero()), first, Vec3(-first), second, Vec3(-second)})
+      if (!interpolates(sample_.place + side * step, level, adaptivity, plane)) return false;
+    return true;
+  }
+
+ private:
+  /// Grid points on either side of a sample: of the cells of level 2 that are one cell away.
+  static constexpr int radius = 9, width = 2 * radius + 2;
+
+  std::size_t index(const Vec3& p) const {
+    std::size_t at = 0;
+    for (int a = 0; a < 3; ++a)
+      at = at * width + static_cast<std::size_t>(static_cast<int>(p[a]) - origin_[a]);
+    return at;
+  }
+
+  /// A number with the sign of the height of a point above the surface along the sample's normal; the surface
+  /// near the sample is one sheet.
+  double height_over(const Vec3& place) const {
+    const double height = (place - sample_.place).dot(sample_.normal);
+    // The distance of the surface from the sample's plane here; its sign is that of the closer side.
+    const Vec3 in_plane = place - height * sample_.normal;
+    const double away = tree_.distance(in_plane, Sampling::reach);
+    if (std::abs(height) > away) return height;
+    const bool above = tree_.distance(in_plane + Sampling::plane_offset * sample_.normal, Sampling::reach) <
+                       tree_.distance(in_plane - Sampling::plane_offset * sample_.normal, Sampling::reach);
+    return height - (above ? away : -away);
+  }
+
+  /// The distance at a grid point, signed by the surface or by the sample's plane.
+  double value(const Vec3& p, bool plane) {
+    const std::size_t at = index(p);
+    if (distances_[at] < 0) distances_[at] = tree_.distance(p, 2 * Sampling::reach);
+    if (plane) return std::copysign(distances_[at], (p - sample_.place).dot(sample_.normal));
+    if (heights_[at] == 0) heights_[at] = std::signbit(height_over(p)) ? -1 : 1;
+    return heights_[at] < 0 ? -distances_[at] : distances_[at];
+  }
+
+  bool interpolates(const Vec3& place, int level, double adaptivity, bool plane) {
+    const double side = 1 << level;
+    const Vec3 low = side * (place / side).array().floor().matrix();
+    const auto value_at = [&](int x, int y, int z) { return value(low + 0.5 * side * Vec3(x, y, z), plane); };
+    std::array<double, 8> corners;
+    for (int k = 0; k < 8; ++k)
+      corners[static_cast<std::size_t>(k)] = value_at(2 * (k & 1), 2 * (k >> 1 & 1), 2 * (k >> 2));
+    for (int i = 0; i < 27; ++i) {
+      double coarse = 0;
+      for (int k = 0; k < 8; ++k) {
+        double share = 1;
+        for (int a = 0, at = i; a < 3; ++a, at /= 3)
+          share *= (k >> a & 1) ? 0.5 * (at % 3) : 1 - 0.5 * (at % 3);
+        coarse += share * corners[static_cast<std::size_t>(k)];
+      }
+      const double exact = value_at(i % 3, i / 3 % 3, i / 9);
+      if (std::min(std::abs(exact), std::abs(coarse)) >= 1 && (exact < 0) == (coarse < 0)) continue;
+      if (std::abs(coarse - exact) > adaptivity) return false;
+    }
+    return true;
+  }
+
+  const DistanceTree& tree_;
+  Sample sample_{};
+  std::array<int, 3> origin_{};
+  std::vector<double> distances_;     ///< by grid point; negative: not computed
+  std::vector<std::int8_t> heights_;  ///< side of the surface; 0: not computed
+};
+
 /// A surface in grid coordinates and its estimated properties.
 class SampledSurface {
  public:
@@ -45,27 +132,32 @@ class SampledSurface {
   /// if the surface is flat.
   double coarse_share(double adaptivity) {
     if (!(adaptivity > 0) || samples_.empty()) return 1;
-    const SurfaceTree tree = nearby_triangles();
+    const DistanceTree tree = nearby_triangles();
     // Samples that are smooth but curved count half: there, one in twenty of OpenVDB's distances is off by
     // more than 0.05 voxels, which prevents about half of such cells from being coarse.
     std::atomic<int> coarse = 0, coarsest = 0;
     parallel_for(0, samples_.size(), 8, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i)
+      NearSample near(tree);
+      for (std::size_t i = begin; i < end; ++i) {
+        near.move_to(samples_[i]);
         for (const bool plane : {false, true}) {
-          if (!is_flat(tree, samples_[i], 1, adaptivity, plane)) continue;
+          if (!near.is_flat(1, adaptivity, plane)) continue;
           ++coarse;
-          coarsest += is_flat(tree, samples_[i], 2, adaptivity, plane);
+          coarsest += near.is_flat(2, adaptivity, plane);
         }
+      }
     });
     const auto n = 2 * static_cast<double>(samples_.size());
     return share_of_coarse_cells(coarse / n, coarsest / n);
   }
 
-  /// A tree of all triangles.
-  SurfaceTree tree() const {
-    std::vector<Vec3> points(surface_.points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) points[i] = frame_.to_grid(surface_.points[i]);
-    return {points, surface_.triangles};
+  /// All triangles, finest cells.
+  TriangleMesh in_grid() const {
+    TriangleMesh mesh;
+    mesh.points.reserve(surface_.points.size());
+    for (const Vec3& p : surface_.points) mesh.points.push_back(frame_.to_grid(p));
+    mesh.triangles = surface_.triangles;
+    return mesh;
   }
 
  private:
@@ -92,7 +184,7 @@ class SampledSurface {
   }
 
   /// The triangles around the samples.
-  SurfaceTree nearby_triangles() const {
+  DistanceTree nearby_triangles() const {
     const auto cube = [](const Vec3& p) {
       std::array<int, 3> at;
       for (int a = 0; a < 3; ++a)
@@ -127,52 +219,6 @@ class SampledSurface {
     return {points, triangles};
   }
 
-  /// True if a cell of this level around a sample is possible, and so are its neighbours along the surface.
-  /// Compares trilinear interpolation between the corners with the distances, as the octree does.
-  /// \param plane require that the surface is a plane there
-  static bool is_flat(const SurfaceTree& tree, const Sample& sample, int level, double adaptivity,
-                      bool plane) {
-    const Vec3 first = sample.normal.unitOrthogonal(), second = sample.normal.cross(first);
-    const double side = 1 << level;
-    for (const Vec3& step : {Vec3(Vec3::Zero()), first, Vec3(-first), second, Vec3(-second)})
-      if (!interpolates(tree, sample, sample.place + side * step, level, adaptivity, plane)) return false;
-    return true;
-  }
-  /// Height of a point above the surface along the sample's normal; the surface near the sample is one sheet.
-  static double height_over(const SurfaceTree& tree, const Sample& sample, const Vec3& place) {
-    const double height = (place - sample.place).dot(sample.normal);
-    // The distance of the surface from the sample's plane here; its sign is that of the closer side.
-    const Vec3 in_plane = place - height * sample.normal;
-    const double away = tree.distance(in_plane, Sampling::reach);
-    const bool above = tree.distance(in_plane + Sampling::plane_offset * sample.normal, Sampling::reach) <
-                       tree.distance(in_plane - Sampling::plane_offset * sample.normal, Sampling::reach);
-    return height - (above ? away : -away);
-  }
-  static bool interpolates(const SurfaceTree& tree, const Sample& sample, const Vec3& place, int level,
-                           double adaptivity, bool plane) {
-    const double side = 1 << level;
-    const Vec3 low = side * (place / side).array().floor().matrix();
-    std::array<double, 27> values;
-    for (int i = 0; i < 27; ++i) {
-      const int x = i % 3, y = i / 3 % 3, z = i / 9;
-      const Vec3 p = low + 0.5 * side * Vec3(x, y, z);
-      const double height = plane ? (p - sample.place).dot(sample.normal) : height_over(tree, sample, p);
-      values[i] = std::copysign(tree.distance(p, 2 * Sampling::reach), height);
-    }
-    for (int i = 0; i < 27; ++i) {
-      double coarse = 0;
-      for (int k = 0; k < 8; ++k) {
-        double share = 1;
-        for (int a = 0, at = i; a < 3; ++a, at /= 3)
-          share *= (k >> a & 1) ? 0.5 * (at % 3) : 1 - 0.5 * (at % 3);
-        coarse += share * values[(k & 1) * 2 + (k >> 1 & 1) * 6 + (k >> 2) * 18];
-      }
-      if (std::min(std::abs(values[i]), std::abs(coarse)) >= 1 && (values[i] < 0) == (coarse < 0)) continue;
-      if (std::abs(coarse - values[i]) > adaptivity) return false;
-    }
-    return true;
-  }
-
   const RepairedSurface& surface_;
   const GridFrame& frame_;
   std::vector<Sample> samples_;
@@ -191,7 +237,10 @@ class SurfaceEstimate {
     frame_ = make_grid_frame(input.low, input.high, h_, options.uniform, options.keep_outside);
     for (const MesherInput::Body& b : input.bodies) surfaces_.emplace_back(b.surface, frame_);
     if (input.bodies.size() > 1)
-      for (const SampledSurface& s : surfaces_) trees_.push_back(std::make_unique<SurfaceTree>(s.tree()));
+      for (const SampledSurface& s : surfaces_) {
+        const TriangleMesh surface = s.in_grid();
+        trees_.push_back(std::make_unique<SurfaceTree>(surface.points, surface.triangles));
+      }
   }
 
   MesherEstimate run() {
@@ -307,7 +356,9 @@ class SurfaceEstimate {
   /// Adds the sides of the interfaces between layers; thin layers have smaller cells.
   void add_layers(double& sides) {
     if (input_.layers.empty()) return;
-    const SurfaceTree tree = surfaces_[0].tree();
+    const TriangleMesh surface = surfaces_[0].in_grid();
+    const SurfaceTree winding(surface.points, surface.triangles);
+    const DistanceTree distances(surface.points, surface.triangles);
     double depth = 0;
     for (const MaterialLayer& layer : input_.layers) {
       depth += layer.thickness / h_;
@@ -316,13 +367,13 @@ class SurfaceEstimate {
                             layer.thickness / h_ < DistanceTuning::Sheets::min_cells * side;
            side /= 2)
         times *= 4;
-      sides += 2 * times * area_at_depth(tree, depth);
+      sides += 2 * times * area_at_depth(winding, distances, depth);
     }
   }
 
   /// The area of the surface at a depth inside the first body, squared finest cells: the volume between two
   /// nearby depths, divided by their difference.
-  double area_at_depth(const SurfaceTree& tree, double depth) {
+  double area_at_depth(const SurfaceTree& winding, const DistanceTree& distances, double depth) {
     const Vec3 size = (input_.high - input_.low) / h_;
     constexpr int n = Sampling::volume_samples;
     const double half = std::max(0.5, 0.5 * size.maxCoeff() / n);
@@ -332,8 +383,8 @@ class SurfaceEstimate {
       const int x = i % n, y = i / n % n, z = i / (n * n);
       const Vec3 share((x + sequence(i, first_step)) / n, (y + sequence(i, second_step)) / n, (z + 0.5) / n);
       const Vec3 place = low + size.cwiseProduct(share);
-      const double distance = tree.distance(place, depth + half);
-      found += distance > depth - half && distance < depth + half && tree.winding_number(place) > 0.5;
+      const double distance = distances.distance(place, depth + half);
+      found += distance > depth - half && distance < depth + half && winding.winding_number(place) > 0.5;
     }
     return size.prod() * found / (n * n * n) / (2 * half);
   }

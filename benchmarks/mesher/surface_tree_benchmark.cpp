@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/geometry/distance_tree.h"
 #include "common/random.h"
 #include "tetwright/surface_mesh.h"
 
@@ -32,6 +33,28 @@ TriangleMesh bumpy_sphere() {
   return mesh;
 }
 
+/// Bars of 2 x 1000 slivers that cross each other, not along any axis.
+TriangleMesh bars() {
+  constexpr int around = 1000;
+  TriangleMesh mesh;
+  for (const Vec3& along : {Vec3(3, 2, 1), Vec3(-2, 3, 1), Vec3(1, -2, 3)}) {
+    const Vec3 axis = along.normalized(), first = axis.unitOrthogonal(), second = axis.cross(first);
+    const auto start = static_cast<Index>(mesh.points.size());
+    for (int k = 0; k < around; ++k) {
+      const double angle = 2 * std::numbers::pi * k / around;
+      for (const double end : {-1.0, 1.0})
+        mesh.points.push_back(end * axis + 0.3 * (std::cos(angle) * first + std::sin(angle) * second));
+    }
+    for (int k = 0; k < around; ++k) {
+      const auto a = start + static_cast<Index>(2 * k),
+                 b = start + static_cast<Index>(2 * ((k + 1) % around));
+      mesh.triangles.push_back({a, b, a + 1});
+      mesh.triangles.push_back({b, b + 1, a + 1});
+    }
+  }
+  return mesh;
+}
+
 /// Random points, each within `reach` of a point of the surface along each axis.
 std::vector<Vec3> queries(const TriangleMesh& mesh, double reach) {
   Random random(1);
@@ -54,22 +77,30 @@ void winding_numbers(benchmark::State& state) {
 }
 BENCHMARK(winding_numbers)->ArgName("reach")->Arg(10)->Arg(1000)->Unit(benchmark::kMillisecond);
 
-void distances(benchmark::State& state) {
-  const TriangleMesh mesh = bumpy_sphere();
-  const SurfaceTree tree(mesh.points, mesh.triangles);
+void measure_distances(benchmark::State& state, const TriangleMesh& mesh) {
+  const DistanceTree tree(mesh.points, mesh.triangles);
   const double reach = 1e-3 * static_cast<double>(state.range(0));
   const std::vector<Vec3> points = queries(mesh, reach);
   for (auto _ : state)
     for (const Vec3& p : points) benchmark::DoNotOptimize(tree.distance(p, 2 * reach));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(points.size()));
 }
+void distances(benchmark::State& state) { measure_distances(state, bumpy_sphere()); }
 BENCHMARK(distances)->ArgName("reach")->Arg(10)->Arg(1000)->Unit(benchmark::kMillisecond);
+void distances_from_slivers(benchmark::State& state) { measure_distances(state, bars()); }
+BENCHMARK(distances_from_slivers)->ArgName("reach")->Arg(10)->Arg(1000)->Unit(benchmark::kMillisecond);
 
 void build_surface_tree(benchmark::State& state) {
   const TriangleMesh mesh = bumpy_sphere();
   for (auto _ : state) benchmark::DoNotOptimize(SurfaceTree(mesh.points, mesh.triangles));
 }
 BENCHMARK(build_surface_tree)->Unit(benchmark::kMillisecond)->UseRealTime();
+
+void build_distance_tree(benchmark::State& state) {
+  const TriangleMesh mesh = bumpy_sphere();
+  for (auto _ : state) benchmark::DoNotOptimize(DistanceTree(mesh.points, mesh.triangles));
+}
+BENCHMARK(build_distance_tree)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
 }  // namespace tetwright

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/geometry/point_triangle.h"
+#include "common/geometry/distance_tree.h"
 #include "common/portable_math.h"
 #include "tetwright/resources.h"
 
@@ -148,13 +148,7 @@ double value(const Cubic& c, const Vec3& v) {
 SurfaceTree::SurfaceTree(std::span<const Vec3> points, std::span<const Triangle> triangles) {
   const std::size_t n = triangles.size();
   if (n == 0) return;
-  // Scale the longest side to about 1, so that products of up to nine lengths neither overflow nor underflow.
-  Vec3 low = points[triangles[0][0]], high = low;
-  for (const Triangle& t : triangles)
-    for (Index v : t) low = low.cwiseMin(points[v]), high = high.cwiseMax(points[v]);
-  const double half_side = (0.5 * high - 0.5 * low).maxCoeff();
-  if (half_side > 0) scale_ = std::ldexp(1.0, std::clamp(-std::ilogb(half_side), -1000, 1000));
-
+  scale_ = unit_scale(points, triangles);
   std::vector<std::array<Vec3, 3>> corners(n);
   std::vector<Vec3> middles(n);  // times 3
   for (std::size_t t = 0; t < n; ++t) {
@@ -239,16 +233,6 @@ double SurfaceTree::winding_number(const Vec3& p) const {
     i = node.next;
   }
   return far / (4 * std::numbers::pi) + near.turns();
-}
-
-double SurfaceTree::distance(const Vec3& p, double at_most) const {
-  if (!(at_most > 0)) return at_most;
-  const Vec3 from = scale_ * p;
-  const double limit = (scale_ * at_most) * (scale_ * at_most);
-  const double best = tree_.nearest(from, limit, tree_.all(), [&](std::size_t t, double so_far) {
-    return std::min(so_far, squared_distance(from, triangles_[t][0], triangles_[t][1], triangles_[t][2]));
-  });
-  return best < limit ? std::sqrt(best) / scale_ : at_most;
 }
 
 double winding_number(std::span<const Vec3> points, std::span<const Triangle> triangles, const Vec3& p) {

@@ -11,13 +11,14 @@
 namespace tetwright {
 
 /// A bounding volume hierarchy over triangles for fast generalised winding numbers (Barill et al. 2018, "Fast
-/// winding numbers for soups and clouds") and distances. Accepts any finite coordinates and any defects.
+/// winding numbers for soups and clouds"). Accepts any finite coordinates and any defects; distance_tree.h
+/// has distances.
 ///
 /// Immutable after construction; all functions may be called concurrently. Built in O(n log n), in parallel;
 /// the result does not depend on the number of threads. About 200 bytes for each triangle.
 class SurfaceTree {
  public:
-  /// Copies its input. Distances are in the unit of `points`.
+  /// Copies its input.
   SurfaceTree(std::span<const Vec3> points, std::span<const Triangle> triangles);
 
   /// Generalised winding number: 1 well inside a closed surface oriented outwards, 0 outside, in between
@@ -25,9 +26,6 @@ class SurfaceTree {
   /// groups by the first three terms of their multipole series: error below 0.01, typically 0.002.
   /// \pre distance of `p` from the surface at most about 1e30 times its size
   double winding_number(const Vec3& p) const;
-
-  /// Distance from the nearest triangle, or `at_most` if none is nearer.
-  double distance(const Vec3& p, double at_most) const;
 
  private:
   /// Multipole series of a node of the tree.

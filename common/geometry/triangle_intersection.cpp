@@ -91,6 +91,27 @@ bool all_on_one_side(const std::array<int, 3>& side) {
   return side[0] != 0 && side[0] == side[1] && side[1] == side[2];
 }
 
+bool all_zero(const std::array<int, 3>& side) { return side[0] == 0 && side[1] == 0 && side[2] == 0; }
+
+/// Whether an edge of t separates points of its plane from t: all are strictly on the other side of the line
+/// through it than t's third corner. Convex polygons in a plane are apart if and only if an edge of one of
+/// them separates them, and this takes a fraction of the tests that all pairs of edges take.
+/// \param edges number of t's edges to test; edge k starts at corner k
+template <std::size_t N>
+bool separates(const TriangleCorners& t, std::size_t edges, const std::array<Vec3, N>& points) {
+  const int plane = proper_plane(t[0], t[1], t[2]);
+  if (plane < 0) return false;
+  const auto [u, v] = planes[plane];
+  const int own = orient2d(t[0], t[1], t[2], u, v);
+  for (std::size_t k = 0; k < edges; ++k) {
+    const Vec3 &a = t[k], &b = t[(k + 1) % 3];
+    if (std::all_of(points.begin(), points.end(),
+                    [&, u = u, v = v](const Vec3& p) { return orient2d(a, b, p, u, v) == -own; }))
+      return true;
+  }
+  return false;
+}
+
 bool boxes_apart(const TriangleCorners& f, const TriangleCorners& g) {
   for (int k = 0; k < 3; ++k) {
     const auto [f_low, f_high] = std::minmax({f[0][k], f[1][k], f[2][k]});
@@ -106,6 +127,7 @@ bool meet_unconnected(const TriangleCorners& f, const TriangleCorners& g) {
   if (all_on_one_side(g_side)) return false;
   const std::array<int, 3> f_side = sides(g, f);
   if (all_on_one_side(f_side)) return false;
+  if (all_zero(f_side) && all_zero(g_side) && (separates(f, 3, g) || separates(g, 3, f))) return false;
   // If two triangles meet, an edge of one meets the other.
   for (int k = 0; k < 3; ++k) {
     const int next = (k + 1) % 3;
@@ -117,13 +139,20 @@ bool meet_unconnected(const TriangleCorners& f, const TriangleCorners& g) {
 
 /// Whether triangles that share one vertex meet elsewhere.
 /// \param f_other, g_other endpoints of the edges opposite the shared vertex
-bool meet_beside_vertex(const TriangleCorners& f, const TriangleCorners& g,
+bool meet_beside_vertex(const TriangleCorners& f, const TriangleCorners& g, const Vec3& shared,
                         const std::array<const Vec3*, 2>& f_other,
                         const std::array<const Vec3*, 2>& g_other) {
   const int f0 = orient3d(g[0], g[1], g[2], *f_other[0]), f1 = orient3d(g[0], g[1], g[2], *f_other[1]);
   if (f0 * f1 > 0) return false;
   const int g0 = orient3d(f[0], f[1], f[2], *g_other[0]), g1 = orient3d(f[0], f[1], f[2], *g_other[1]);
   if (g0 * g1 > 0) return false;
+  if (f0 == 0 && f1 == 0 && g0 == 0 && g1 == 0) {
+    // Two sectors of a plane with a common tip are apart if a side of one separates the other one from it.
+    const std::array<Vec3, 2> f_ends{*f_other[0], *f_other[1]}, g_ends{*g_other[0], *g_other[1]};
+    if (separates({f_ends[0], shared, f_ends[1]}, 2, g_ends) ||
+        separates({g_ends[0], shared, g_ends[1]}, 2, f_ends))
+      return false;
+  }
   return segment_meets_triangle(*f_other[0], *f_other[1], f0, f1, g) ||
          segment_meets_triangle(*g_other[0], *g_other[1], g0, g1, f);
 }
@@ -162,7 +191,7 @@ bool triangles_intersect(const MeshTriangle& f, const MeshTriangle& g) {
   // Only a triangle with a repeated vertex can consist of shared vertices.
   if (f_count == 0 || g_count == 0) return false;
   if (shared_count == 2) return meet_beside_edge(*shared[0], *shared[1], *f_other[0], *g_other[0]);
-  return meet_beside_vertex(f.points, g.points, {f_other[0], f_other[f_count - 1]},
+  return meet_beside_vertex(f.points, g.points, *shared[0], {f_other[0], f_other[f_count - 1]},
                             {g_other[0], g_other[g_count - 1]});
 }
 

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "common/features/edge_uses.h"
-#include "common/geometry/surface_tree.h"
+#include "common/geometry/distance_tree.h"
 #include "common/mesh/disjoint_sets.h"
 #include "common/message_text.h"
 #include "mesher/input/body_contacts.h"
@@ -113,7 +113,7 @@ class PatchJoiner {
     if (!std::isfinite(diagonal)) return;
     const double tolerance = contact_tolerance(contact_, diagonal);
     for (std::size_t k = 0; k < open_.size(); ++k) {
-      std::optional<SurfaceTree> tree;  // built if a border is near
+      std::optional<DistanceTree> tree;  // built if a border is near
       for (std::size_t i = 0; i < open_.size(); ++i) {
         if (i == k) continue;
         for (FreeEdge& edge : open_[i].border)

@@ -150,9 +150,15 @@ double LevelSetSampler::at(const Vec3& point, Vec3& gradient) {
   for (int a = 0; a < 3; ++a)
     cell[a] = static_cast<int>(std::floor(std::clamp(point[a], 0.0, static_cast<double>(cells_[a]) - 0.5)));
   if (walls_)
-    if (const int depth = walls_->depth({cell.x(), cell.y(), cell.z()}); depth >= 0)
-      return true_walls_ ? walls_->true_distance(point, depth, gradient)
-                         : walls_->changed_distance(point, depth, gradient);
+    if (const int depth = walls_->depth({cell.x(), cell.y(), cell.z()}); depth >= 0) {
+      if (point != last_point_) {
+        last_distance_ = true_walls_ ? walls_->true_distance(point, depth, last_gradient_)
+                                     : walls_->changed_distance(point, depth, last_gradient_);
+        last_point_ = point;
+      }
+      gradient = last_gradient_;
+      return last_distance_;
+    }
   double v[8];
   reader_.corners(cell.x(), cell.y(), cell.z(), v);
   const Vec3 f = point - cell.cast<double>();

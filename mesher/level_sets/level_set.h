@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <memory>
 #include <vector>
 
@@ -69,7 +70,8 @@ class LevelSet {
 };
 
 /// Evaluates a level set, in grid coordinates and voxels. Caches the last leaf read, so consecutive nearby
-/// points are fast. Not thread-safe; any number of samplers of one level set may be used concurrently.
+/// points are fast, and the last distance near a thin wall, which takes far longer than one elsewhere. Not
+/// thread-safe; any number of samplers of one level set may be used concurrently.
 class LevelSetSampler {
  public:
   explicit LevelSetSampler(const LevelSet& level_set);
@@ -86,6 +88,9 @@ class LevelSetSampler {
   std::array<int, 3> cells_;
   const WallDistances* walls_;
   bool true_walls_;
+  Vec3 last_point_ = Vec3::Constant(HUGE_VAL);  ///< the last one near a wall, with its distance and gradient
+  double last_distance_ = 0;
+  Vec3 last_gradient_ = Vec3::Zero();
 };
 
 }  // namespace tetwright

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/geometry/surface_tree.h"
+#include "common/geometry/distance_tree.h"
 #include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
 #include "mesher/level_sets/level_set.h"
@@ -26,7 +26,7 @@ struct GridBox {
 /// too far from that depth contains no such point.
 class DepthFinder {
  public:
-  DepthFinder(const SurfaceTree& surface, const LevelSet& boundary, double depth)
+  DepthFinder(const DistanceTree& surface, const LevelSet& boundary, double depth)
       : surface_(surface), boundary_(boundary), depth_(depth) {}
 
   /// The boxes of `side` grid points that may contain part of the band; memory and time grow with them.
@@ -83,7 +83,7 @@ class DepthFinder {
     }
   }
 
-  const SurfaceTree& surface_;
+  const DistanceTree& surface_;
   const LevelSet& boundary_;
   double depth_;
 };
@@ -101,7 +101,7 @@ std::shared_ptr<const LevelSet> LevelSet::at_depth(const RepairedSurface& surfac
   const auto shift = static_cast<Index>(all.points.size());
   for (const Vec3& p : surface.points) all.points.push_back(frame.to_grid(p));
   for (const auto& [a, b, c] : surface.triangles) all.triangles.push_back({a + shift, b + shift, c + shift});
-  const SurfaceTree tree(all.points, all.triangles);
+  const DistanceTree tree(all.points, all.triangles);
 
   const DepthFinder finder(tree, boundary, depth);
   const std::vector<GridBox> boxes = finder.boxes(frame.cells, leaf_side, progress);

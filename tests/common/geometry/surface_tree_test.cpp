@@ -5,9 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "common/geometry/point_triangle.h"
 #include "common/random.h"
 #include "tests/mesher/test_surfaces.h"
 #include "tetwright/resources.h"
@@ -89,20 +87,6 @@ TEST(SurfaceTree, WindingNumbersAgreeWithTheExactSum) {
   EXPECT_LT(max_error(random_triangles(2000)), promised);
 }
 
-TEST(SurfaceTree, DistancesAreThoseOfTheNearestTriangle) {
-  for (const TriangleMesh& mesh : {make_torus(1, 0.1, 100, 10), random_triangles(500)}) {
-    const SurfaceTree tree(mesh.points, mesh.triangles);
-    for (const Vec3& p : probes(mesh, 300)) {
-      double nearest = std::numeric_limits<double>::infinity();
-      for (const auto& [a, b, c] : mesh.triangles)
-        nearest =
-            std::min(nearest, std::sqrt(squared_distance(p, mesh.points[a], mesh.points[b], mesh.points[c])));
-      EXPECT_NEAR(tree.distance(p, std::numeric_limits<double>::infinity()), nearest, 1e-12 * (1 + nearest));
-      EXPECT_EQ(tree.distance(p, 0.5 * nearest), 0.5 * nearest);
-    }
-  }
-}
-
 TEST(SurfaceTree, WorksAtAnyScale) {
   const TriangleMesh sphere = make_sphere(1);
   for (const double scale : {1e-150, 1e150}) {
@@ -111,20 +95,17 @@ TEST(SurfaceTree, WorksAtAnyScale) {
     const SurfaceTree tree(scaled.points, scaled.triangles);
     EXPECT_NEAR(tree.winding_number(scale * Vec3(0.1, 0.2, 0.3)), 1, 0.01);
     EXPECT_NEAR(tree.winding_number(scale * Vec3(2, 3, 4)), 0, 0.01);
-    EXPECT_NEAR(tree.distance(Vec3(3 * scale, 0, 0), 1e200) / scale, 2, 1e-9);
   }
 }
 
 TEST(SurfaceTree, NothingAndFlatTrianglesDoNoHarm) {
   const SurfaceTree none({}, {});
   EXPECT_EQ(none.winding_number({1, 2, 3}), 0);
-  EXPECT_EQ(none.distance({1, 2, 3}, 7), 7);
   const std::vector<Vec3> points(3, Vec3(1, 1, 1));
   const std::vector<Triangle> flat{{0, 1, 2}};
   const SurfaceTree point(points, flat);
   EXPECT_EQ(point.winding_number({1, 1, 1}), 0);
   EXPECT_EQ(point.winding_number({2, 1, 1}), 0);
-  EXPECT_EQ(point.distance({3, 1, 1}, 7), 2);
 }
 
 TEST(SurfaceTree, IsTheSameForAnyNumberOfThreads) {
@@ -134,7 +115,7 @@ TEST(SurfaceTree, IsTheSameForAnyNumberOfThreads) {
     const ThreadLimit limit(threads);
     const SurfaceTree tree(mesh.points, mesh.triangles);
     std::vector<double> all;
-    for (const Vec3& p : points) all.push_back(tree.winding_number(p)), all.push_back(tree.distance(p, 10));
+    for (const Vec3& p : points) all.push_back(tree.winding_number(p));
     return all;
   };
   EXPECT_EQ(values(1), values(4));

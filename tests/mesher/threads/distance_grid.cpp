@@ -8,7 +8,7 @@
 #include <memory>
 #include <utility>
 
-#include "common/geometry/surface_tree.h"
+#include "common/geometry/distance_tree.h"
 #include "mesher/level_sets/openvdb_grids.h"
 
 namespace tetwright {
@@ -70,7 +70,7 @@ DistanceGrid DistanceGrid::copy() const { return DistanceGrid(std::make_unique<I
 DistanceGrid DistanceGrid::unsigned_distances(std::span<const Vec3> points,
                                               std::span<const Triangle> triangles, Progress*) {
   DistanceGrid grid(level_set_band);
-  const SurfaceTree tree(points, triangles);
+  const DistanceTree tree(points, triangles);
   Vec3 low = points.front(), high = points.front();
   for (const Vec3& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
   const auto floor_of = [](double v) { return static_cast<int>(std::floor(v)); };
