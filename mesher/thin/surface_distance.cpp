@@ -4,9 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <tuple>
+#include <utility>
 
+#include "common/geometry/box_pairs.h"
 #include "common/geometry/point_triangle.h"
 #include "common/geometry/ray_crossing.h"
+#include "common/geometry/triangle_intersection.h"
 #include "common/mesh/disjoint_sets.h"
 #include "common/tolerances.h"
 #include "mesher/level_sets/hole_caps.h"
@@ -40,8 +44,6 @@ SurfaceDistance::SurfaceDistance(std::span<const Vec3> points, std::span<const T
   const bool caps_are_walls =
       area_of(surface, count) <= DistanceTuning::Caps::max_wall_share * area_of(0, surface);
   const std::vector<Index> order = median_order(boxes, middles, DistanceTuning::Triangles::leaf_size);
-  tree_ =
-      BoxTree(count, DistanceTuning::Triangles::leaf_size, [&](std::size_t i) { return boxes[order[i]]; });
   triangles_.resize(count);
   normals_.resize(count);
   parts_.resize(count);
@@ -56,41 +58,104 @@ SurfaceDistance::SurfaceDistance(std::span<const Vec3> points, std::span<const T
                                                          : Part::cap;
     }
   });
+  tree_ = ReferenceTree(triangles_);
   if (closed < surface) open_.emplace(points, triangles.subspan(closed));
-  if (closed == surface && caps.triangles.empty() && !intersects_itself) find_sides(triangles, order);
+  find_sides(triangles, order);
 }
 
-/// Finds the triangles behind which, and only there, is the inside: with closed surfaces that intersect
-/// nothing, those of components with the inside on the right side of one triangle, unless rounding determines
-/// the normal.
+std::vector<std::uint8_t> SurfaceDistance::find_clear(std::span<const Triangle> triangles,
+                                                      const std::vector<Index>& order) const {
+  const std::size_t surface = triangles.size();
+  std::vector<std::uint8_t> is_clear(surface, 1);
+  if (!intersects_itself_ && order.size() == surface) return is_clear;
+  std::vector<std::array<Vec3, 3>> corners(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) corners[order[i]] = triangles_[i];
+  std::vector<Box3> boxes(order.size());
+  for (std::size_t t = 0; t < order.size(); ++t) {
+    for (const Vec3& c : corners[t]) boxes[t].add(c);
+    if (t < surface) continue;
+    const Vec3 around = Vec3::Constant(DistanceTuning::Caps::clear_distance);
+    boxes[t] = {boxes[t].low - around, boxes[t].high + around};
+  }
+  for (const auto& [f, g] : intersecting_pairs(boxes, [&](Index t, Index u) {
+         if (t >= surface) return false;
+         return u >= surface || (intersects_itself_ &&
+                                 triangles_intersect({triangles[t], corners[t]}, {triangles[u], corners[u]}));
+       })) {
+    is_clear[f] = 0;
+    if (g < surface) is_clear[g] = 0;
+  }
+  return is_clear;
+}
+
+/// Finds on which sides of triangles the inside is. That changes only where something meets the surface: one
+/// triangle tells it for all that are connected with it by edges of two triangles each, oriented alike.
+/// Triangles whose normal is determined by rounding do not tell.
 void SurfaceDistance::find_sides(std::span<const Triangle> triangles, const std::vector<Index>& order) {
-  Index points = 0;
-  for (const Triangle& t : triangles) points = std::max({points, t[0] + 1, t[1] + 1, t[2] + 1});
-  DisjointSets components(points);
-  for (const Triangle& t : triangles) components.unite(t[0], t[1]), components.unite(t[0], t[2]);
+  const std::vector<std::uint8_t> is_clear = find_clear(triangles, order);
+  struct Use {
+    Index low, high, triangle;
+    bool forwards;
+    auto ends() const { return std::pair(low, high); }
+  };
+  std::vector<Use> uses;
+  uses.reserve(3 * triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index a = triangles[t][k], b = triangles[t][(k + 1) % 3];
+      uses.push_back({std::min(a, b), std::max(a, b), static_cast<Index>(t), a < b});
+    }
+  parallel_sort(uses, [](const Use& a, const Use& b) {
+    return std::tuple(a.low, a.high, a.triangle, a.forwards) <
+           std::tuple(b.low, b.high, b.triangle, b.forwards);
+  });
+  DisjointSets components(triangles.size());
+  for (std::size_t i = 0, j; i < uses.size(); i = j) {
+    for (j = i; j < uses.size() && uses[j].ends() == uses[i].ends();) ++j;
+    if (j - i == 2 && uses[i].forwards != uses[i + 1].forwards && is_clear[uses[i].triangle] &&
+        is_clear[uses[i + 1].triangle])
+      components.unite(uses[i].triangle, uses[i + 1].triangle);
+  }
   const auto height = [&](std::size_t i) {
     const auto& [a, b, c] = triangles_[i];
     const double longest =
         std::sqrt(std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()}));
     return longest > 0 ? (b - a).cross(c - a).norm() / longest : 0;
   };
-  std::vector<std::size_t> highest(points, order.size());  // by component
+  std::vector<std::size_t> highest(triangles.size(), order.size());  // by component
   std::vector<double> heights(order.size());
+  const auto tells = [&](std::size_t i) { return order[i] < triangles.size() && is_clear[order[i]]; };
   for (std::size_t i = 0; i < order.size(); ++i) {
+    if (!tells(i)) continue;
     heights[i] = height(i);
-    std::size_t& best = highest[components.root(triangles[order[i]][0])];
+    std::size_t& best = highest[components.root(order[i])];
     if (best == order.size() || heights[i] > heights[best]) best = i;
   }
-  std::vector<std::uint8_t> is_right(points, 0);
-  for (Index c = 0; c < points; ++c) {
-    if (highest[c] == order.size()) continue;
-    const auto& [a, b, d] = triangles_[highest[c]];
-    is_right[c] = has_inside_behind({(a + b + d) / 3, normals_[highest[c]]});
-  }
-  tells_side_.resize(order.size());
+  std::vector<Sides> of_component(triangles.size(), Sides::unknown);
+  parallel_for(
+      0, triangles.size(), DistanceGrains::sided_components, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t c = begin; c < end; ++c) {
+          if (highest[c] == order.size() || !(heights[highest[c]] > DistanceTuning::Triangles::min_height))
+            continue;
+          const auto& [a, b, d] = triangles_[highest[c]];
+          const Vec3 middle = (a + b + d) / 3,
+                     step = DistanceTuning::Triangles::side_distance * normals_[highest[c]];
+          const bool behind = inside(middle - step), in_front = inside(middle + step);
+          of_component[c] = behind && in_front ? Sides::both
+                            : behind           ? Sides::behind
+                            : in_front         ? Sides::unknown
+                                               : Sides::neither;
+        }
+      });
+  sides_.assign(order.size(), Sides::unknown);
   for (std::size_t i = 0; i < order.size(); ++i)
-    tells_side_[i] = is_right[components.root(triangles[order[i]][0])] &&
-                     heights[i] > DistanceTuning::Triangles::min_height;
+    if (tells(i) && heights[i] > DistanceTuning::Triangles::min_height)
+      sides_[i] = of_component[components.root(order[i])];
+}
+
+std::optional<bool> SurfaceDistance::known_boundary(std::size_t triangle) const {
+  if (sides_[triangle] == Sides::unknown) return std::nullopt;
+  return sides_[triangle] == Sides::behind;
 }
 
 std::optional<SurfacePlace> SurfaceDistance::nearest(const Vec3& point, double at_most) const {
@@ -98,7 +163,7 @@ std::optional<SurfacePlace> SurfaceDistance::nearest(const Vec3& point, double a
   Vec3 place = point;
   double squared_distance = at_most * at_most, alignment = 0;
   bool is_in_front = false, is_behind = false, is_certain = false;  // of the closest triangles
-  tree_.nearest(point, squared_distance, tree_.all(), [&](std::size_t t, double best) {
+  tree_.nearest(point, squared_distance, [&](std::size_t t, double best) {
     if (normals_[t].isZero(0)) return best;
     const auto& [a, b, c] = triangles_[t];
     const Vec3 p = closest_point(point, a, b, c);
@@ -107,10 +172,10 @@ std::optional<SurfacePlace> SurfaceDistance::nearest(const Vec3& point, double a
     const double height = normals_[t].dot(point - p), aligned = std::abs(height);
     const bool is_tie =
         nearest < triangles_.size() && squared >= squared_distance * (1 - DistanceTuning::Triangles::tie);
-    if (!is_tie) is_in_front = is_behind = false, is_certain = !tells_side_.empty();
+    if (!is_tie) is_in_front = is_behind = false, is_certain = true;
     (height > 0 ? is_in_front : is_behind) = true;
-    is_certain =
-        is_certain && tells_side_[t] && height * height > DistanceTuning::Triangles::min_side_share * squared;
+    is_certain = is_certain && sides_[t] != Sides::unknown && (!is_tie || sides_[t] == sides_[nearest]) &&
+                 height * height > DistanceTuning::Triangles::min_side_share * squared;
     // Among equally close triangles choose the one that faces the point most directly, then the first, so
     // that the result does not depend on the search order.
     if (is_tie && (aligned < alignment || (aligned == alignment && t > nearest))) return best;
@@ -127,13 +192,13 @@ std::optional<SurfacePlace> SurfaceDistance::nearest(const Vec3& point, double a
   const double min_distance = DistanceTuning::Triangles::min_side_distance;
   int side = 0;
   if (is_certain && is_in_front != is_behind && squared_distance > min_distance * min_distance)
-    side = is_in_front ? 1 : -1;
-  return SurfacePlace{place, normals_[nearest], side, parts_[nearest] == Part::cap};
+    side = sides_[nearest] == Sides::both || (is_behind && sides_[nearest] == Sides::behind) ? -1 : 1;
+  return SurfacePlace{place, normals_[nearest], side, parts_[nearest] == Part::cap, known_boundary(nearest)};
 }
 
 bool SurfaceDistance::is_ball_empty(const Vec3& center, double radius) const {
   const double limit = radius * radius;
-  return tree_.nearest(center, limit, tree_.all(), [&](std::size_t t, double best) {
+  return tree_.nearest(center, limit, [&](std::size_t t, double best) {
     if (normals_[t].isZero(0) || parts_[t] == Part::cap) return best;
     const auto& [a, b, c] = triangles_[t];
     if (const double height = normals_[t].dot(center - a); height * height >= limit) return best;
@@ -144,6 +209,7 @@ bool SurfaceDistance::is_ball_empty(const Vec3& center, double radius) const {
 
 bool SurfaceDistance::inside(const Vec3& point) const {
   int winding = 0;
+  std::vector<Index> counted;  // of the triangles in several parts, which may be visited several times
   tree_.for_each_in(
       [&](const Box3& box) {
         return box.low.x() <= point.x() && point.x() <= box.high.x() && box.low.y() <= point.y() &&
@@ -153,7 +219,12 @@ bool SurfaceDistance::inside(const Vec3& point) const {
         if (parts_[t] != Part::closed) return;
         const auto& [a, b, c] = triangles_[t];
         const int crossing = vertical_crossing(a, b, c, point);
-        if (crossing != 0 && at_or_above(a, b, c, crossing, point)) winding += crossing;
+        if (crossing == 0 || !at_or_above(a, b, c, crossing, point)) return;
+        if (tree_.is_split(t)) {
+          if (std::find(counted.begin(), counted.end(), t) != counted.end()) return;
+          counted.push_back(static_cast<Index>(t));
+        }
+        winding += crossing;
       });
   if (!open_) return winding > 0;
   static const Vec3 offset(tolerance::winding_offset[0], tolerance::winding_offset[1],
@@ -166,14 +237,14 @@ std::optional<SurfacePlace> SurfaceDistance::nearest_facing(const Vec3& point, c
                                                             bool in_front) const {
   const double limit = below * below;
   SurfacePlace wall;
-  const double found = tree_.nearest(point, limit, tree_.all(), [&](std::size_t t, double best) {
+  const double found = tree_.nearest(point, limit, [&](std::size_t t, double best) {
     if (!(normals_[t].dot(normal) < -facing) || parts_[t] == Part::cap) return best;
     const auto& [a, b, c] = triangles_[t];
     if (in_front && (point - a).dot(normals_[t]) < 0) return best;
     const Vec3 p = closest_point(point, a, b, c);
     const double squared = (p - point).squaredNorm();
     if (squared >= best) return best;
-    wall = {p, normals_[t]};
+    wall = {p, normals_[t], 0, false, known_boundary(t)};
     return squared;
   });
   if (!(found < limit)) return std::nullopt;
@@ -181,7 +252,8 @@ std::optional<SurfacePlace> SurfaceDistance::nearest_facing(const Vec3& point, c
 }
 
 bool SurfaceDistance::is_boundary(const SurfacePlace& place) const {
-  return !intersects_itself_ || has_inside_behind(place);
+  return !intersects_itself_ || place.is_boundary.value_or(false) ||
+         (!place.is_boundary && has_inside_behind(place));
 }
 
 bool SurfaceDistance::has_inside_behind(const SurfacePlace& place) const {

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "common/geometry/box_tree.h"
+#include "common/geometry/reference_tree.h"
 #include "common/geometry/surface_tree.h"
 #include "tetwright/surface_mesh.h"
 #include "tetwright/tet_mesh.h"
@@ -20,13 +20,16 @@ struct SurfacePlace {
   /// not tell. Set by SurfaceDistance::nearest() only.
   int side = 0;
   bool on_cap = false;  ///< of a hole, which is no wall
+  /// Whether the inside is behind the triangle and not in front of it; no value if the triangle does not
+  /// tell.
+  std::optional<bool> is_boundary;
 };
 
 /// Exact distances from the triangles of a surface, its exact inside, and the distance from one wall to the
 /// next. Unlike distances on voxels, these resolve walls and gaps of any thickness.
 ///
 /// Distances ignore triangles without area. Immutable after construction; all functions may be called
-/// concurrently. Built in O(n log n); about 200 bytes per triangle.
+/// concurrently. Built in O(n log n); about 350 bytes per triangle.
 class SurfaceDistance {
  public:
   /// Coordinates and results are in voxels.
@@ -63,20 +66,27 @@ class SurfaceDistance {
                                              double below, bool in_front = false) const;
 
  private:
+  /// Where the inside is around a triangle.
+  enum class Sides : std::uint8_t { unknown, behind, both, neither };
   void find_sides(std::span<const Triangle> triangles, const std::vector<Index>& order);
+  /// For each triangle of the surface whether neither another one nor a cap meets it.
+  std::vector<std::uint8_t> find_clear(std::span<const Triangle> triangles,
+                                       const std::vector<Index>& order) const;
+  /// Whether the inside is behind a triangle and not in front of it, if known.
+  std::optional<bool> known_boundary(std::size_t triangle) const;
   /// False for a point of a self-intersecting surface with the inside on both sides.
   bool is_boundary(const SurfacePlace& place) const;
   /// Whether the inside is behind a point of the surface and not in front of it.
   bool has_inside_behind(const SurfacePlace& place) const;
 
-  BoxTree tree_;
-  std::vector<std::array<Vec3, 3>> triangles_;  ///< in the order of the tree
+  ReferenceTree tree_;
+  std::vector<std::array<Vec3, 3>> triangles_;  ///< neighbours in the list are neighbours in space
   std::vector<Vec3> normals_;                   ///< unit; zero for triangles without area
   enum class Part : std::uint8_t { closed, open, cap };
   std::vector<Part> parts_;  ///< the kind of component that each triangle is in
   std::optional<SurfaceTree> open_;
   bool intersects_itself_;
-  std::vector<std::uint8_t> tells_side_;  ///< 1 if the inside is behind a triangle and nowhere else near it
+  std::vector<Sides> sides_;  ///< by triangle
 };
 
 }  // namespace tetwright

@@ -21,6 +21,7 @@ struct DistanceGrains {
   static constexpr std::size_t leaves = 64;              ///< or grid points that need a few reads each
   static constexpr std::size_t depth_boxes = 64;         ///< split further
   static constexpr std::size_t depth_leaves = 16;        ///< with exact distances
+  static constexpr std::size_t sided_components = 64;    ///< two winding numbers each
 };
 
 /// Signed distances of surfaces and their thin parts; mesher/README.md, Tuned numbers, explains the terms.
@@ -77,6 +78,9 @@ struct DistanceTuning {
     /// Points with at least this generalised winding number are inside: one half plus more than the rounding
     /// error, so that the back of a flat sheet is consistently outside.
     static constexpr double inside_winding = 0.5001;
+    /// Triangles at least this far from all caps, voxels, do not meet the surface where winding numbers cross
+    /// 1/2, which caps follow to a fraction of a voxel.
+    static constexpr double clear_distance = 1;
     /// Error of distances near the surface, voxels (the guide, Signed distances).
     static constexpr double distance_error = 0.02;
     /// Min distance of a crossing from both ends of its edge, as a share of the edge, so that no cap triangle

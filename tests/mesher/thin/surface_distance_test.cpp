@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -118,19 +119,45 @@ TEST(SurfaceDistance, ClosestTrianglesTellTheSide) {
   }
 }
 
-TEST(SurfaceDistance, TrianglesOfOtherSurfacesTellNoSide) {
-  const TriangleMesh box = make_box(Vec3(0, 0, 0), Vec3(3, 3, 3)),
-                     inner = make_box(Vec3(1, 1, 1), Vec3(2, 2, 2));
-  // Both oriented outwards: the faces of the inner box have the inside on either side.
-  const TriangleMesh twice = joined(box, inner);
+TEST(SurfaceDistance, TrianglesWithTheInsideOnBothSidesTellIt) {
+  // Both boxes are oriented outwards: the faces of the inner one have the inside on either side.
+  const TriangleMesh twice =
+      joined(make_box(Vec3(0, 0, 0), Vec3(3, 3, 3)), make_box(Vec3(1, 1, 1), Vec3(2, 2, 2)));
   const SurfaceDistance nested = distance_of(twice);
-  told_sides(twice, nested);
-  EXPECT_EQ(nested.nearest(Vec3(1.5, 1.5, 1.9), 10)->side, 0);
-  EXPECT_EQ(nested.nearest(Vec3(1.5, 1.5, 2.9), 10)->side, -1);
-  const SurfaceDistance crossing{box.points, box.triangles, box.triangles.size(), {}, true};
-  EXPECT_EQ(told_sides(box, crossing), 0);
-  const SurfaceDistance open{box.points, box.triangles, 0, {}, false};
-  EXPECT_EQ(told_sides(box, open), 0);
+  EXPECT_GT(told_sides(twice, nested), 2000);
+  EXPECT_EQ(nested.nearest(Vec3(1.5, 1.5, 1.9), 10)->side, -1);
+  EXPECT_EQ(nested.nearest(Vec3(1.5, 1.5, 2.1), 10)->side, -1);
+}
+
+TEST(SurfaceDistance, OnlyTrianglesThatCrossNothingTellTheSide) {
+  // Two spheres that cross: triangles at the curve between them have the inside on either side in parts.
+  const TriangleMesh mesh = joined(make_sphere(2), make_sphere(2, {1.5, 0.1, 0.2}));
+  for (const std::size_t closed : {mesh.triangles.size(), std::size_t{0}}) {
+    const SurfaceDistance crossing{mesh.points, mesh.triangles, closed, {}, true};
+    EXPECT_GT(told_sides(mesh, crossing), 1500);
+    // On the curve in which the spheres meet, 1.5 x + 0.1 y + 0.2 z = 1.15.
+    const auto at_curve = crossing.nearest(Vec3(0.64, 1.895, 0), 10);
+    ASSERT_TRUE(at_curve);
+    EXPECT_EQ(at_curve->side, 0);
+    EXPECT_FALSE(at_curve->is_boundary);
+    EXPECT_EQ(crossing.nearest(Vec3(-2.1, 0, 0), 10)->is_boundary, true);
+    EXPECT_EQ(crossing.nearest(Vec3(1.9, 0.1, 0), 10)->is_boundary, false);
+  }
+}
+
+TEST(SurfaceDistance, TrianglesNearCapsTellNoSide) {
+  // A sphere without its top.
+  TriangleMesh bowl = make_sphere(4);
+  std::erase_if(bowl.triangles, [&](const Triangle& t) {
+    return std::all_of(t.begin(), t.end(), [&](Index p) { return bowl.points[p].z() > 3; });
+  });
+  TriangleMesh cap = square(6, 3, true);
+  for (Vec3& p : cap.points) p -= Vec3(3, 3, 0);
+  const SurfaceDistance open{bowl.points, bowl.triangles, 0, cap, false};
+  EXPECT_GT(told_sides(bowl, open), 1000);
+  EXPECT_EQ(open.nearest(Vec3(3, 0, 2.5), 10)->side, 0);
+  EXPECT_EQ(open.nearest(Vec3(0.1, 0.2, -3.9), 10)->side, -1);
+  EXPECT_EQ(open.nearest(Vec3(0.1, 0.2, -4.1), 10)->side, 1);
 }
 
 TEST(SurfaceDistance, EmptyBallsTouchNothing) {
