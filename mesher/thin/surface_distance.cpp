@@ -252,8 +252,21 @@ std::optional<SurfacePlace> SurfaceDistance::nearest_facing(const Vec3& point, c
 }
 
 bool SurfaceDistance::is_boundary(const SurfacePlace& place) const {
-  return !intersects_itself_ || place.is_boundary.value_or(false) ||
-         (!place.is_boundary && has_inside_behind(place));
+  if (!intersects_itself_) return true;
+  return place.is_boundary && is_alone(place.point) ? *place.is_boundary : has_inside_behind(place);
+}
+
+bool SurfaceDistance::is_alone(const Vec3& point) const {
+  const double radius = 2 * DistanceTuning::Triangles::side_distance, limit = radius * radius;
+  std::size_t first = triangles_.size();
+  return tree_.nearest(point, limit, [&](std::size_t t, double best) {
+    if (t == first) return best;
+    const auto& [a, b, c] = triangles_[t];
+    if ((closest_point(point, a, b, c) - point).squaredNorm() >= limit) return best;
+    if (first < triangles_.size()) return -1.0;  // nothing is nearer: ends the search
+    first = t;
+    return best;
+  }) >= 0;
 }
 
 bool SurfaceDistance::has_inside_behind(const SurfacePlace& place) const {

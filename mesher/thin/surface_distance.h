@@ -76,6 +76,8 @@ class SurfaceDistance {
   std::optional<bool> known_boundary(std::size_t triangle) const;
   /// False for a point of a self-intersecting surface with the inside on both sides.
   bool is_boundary(const SurfacePlace& place) const;
+  /// Whether there is only one triangle where has_inside_behind() would look.
+  bool is_alone(const Vec3& point) const;
   /// Whether the inside is behind a point of the surface and not in front of it.
   bool has_inside_behind(const SurfacePlace& place) const;
 
