@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/parallel/touched_memory.h"
 #include "tetwright/resources.h"
 
 namespace tetwright {
@@ -51,6 +52,8 @@ void bucket_sort(std::size_t sources, std::size_t keys, const ForItems& for_item
     for (std::size_t c = 0; c < chunks; ++c) total += std::exchange(next[c * blocks + b], total);
   }
   block_begins[blocks] = total;
+  items.clear();
+  reserve_touched(items, total);
   items.resize(total);
   for_items_of_chunks([&](std::size_t& at, const Item& item) { items[at++] = item; });
 

@@ -8,6 +8,7 @@
 #include "common/geometry/morton.h"
 #include "common/parallel/bucket_sort.h"
 #include "common/parallel/parallel_sort.h"
+#include "common/parallel/touched_memory.h"
 #include "simplify/tuning/tuning.h"
 #include "tetwright/mesh_quality.h"
 #include "tetwright/resources.h"
@@ -47,7 +48,9 @@ std::vector<Index> MeshCompaction::points_in_curve_order() const {
 
 void MeshCompaction::move_points(const std::vector<Index>& order, const std::vector<Index>& new_point,
                                  std::size_t spare) {
-  std::vector<Vec3> positions(order.size() + spare, Vec3::Zero());
+  std::vector<Vec3> positions;
+  reserve_touched(positions, order.size() + spare);
+  positions.resize(order.size() + spare, Vec3::Zero());
   parallel_for(0, order.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) positions[i] = mesh_.positions_[order[i]];
   });
@@ -83,7 +86,9 @@ std::vector<Index> MeshCompaction::number_tets(const std::vector<Index>& new_poi
       },
       first_point, starts, order);
   live = order.size();
-  std::vector<Index> new_tet(mesh_.tets_.size(), no_index);
+  std::vector<Index> new_tet;
+  reserve_touched(new_tet, mesh_.tets_.size());
+  new_tet.resize(mesh_.tets_.size(), no_index);
   parallel_for(0, live, Grains::slots, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) new_tet[order[i]] = static_cast<Index>(i);
   });
@@ -95,7 +100,9 @@ void MeshCompaction::move_tets(const std::vector<Index>& new_point, const std::v
   // Move one array after the other: memory peaks while both old and new tets exist.
   const std::size_t slots = mesh_.tets_.size();
   {
-    std::vector<TetRecord> tets(live + spare, {dead_tet, {}});
+    std::vector<TetRecord> tets;
+    reserve_touched(tets, live + spare);
+    tets.resize(live + spare, {dead_tet, {}});
     parallel_for(0, slots, Grains::slots, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         if (new_tet[t] == no_index) continue;
@@ -109,7 +116,9 @@ void MeshCompaction::move_tets(const std::vector<Index>& new_point, const std::v
     mesh_.tets_ = std::move(tets);
   }
   const auto move = [&](auto& values) {
-    std::remove_reference_t<decltype(values)> moved(live + spare, 0);
+    std::remove_reference_t<decltype(values)> moved;
+    reserve_touched(moved, live + spare);
+    moved.resize(live + spare, 0);
     parallel_for(0, slots, Grains::slots, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t)
         if (new_tet[t] != no_index) moved[new_tet[t]] = values[t];
@@ -169,6 +178,7 @@ TetMesh MeshCompaction::to_mesh() {
   parallel_for(0, mesh.points.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) mesh.points[p] = mesh_.space_.to_input(mesh.points[p]);
   });
+  reserve_touched(mesh.tets, mesh_.tets_.size());
   mesh.tets.resize(mesh_.tets_.size());
   mesh.materials.resize(mesh_.tets_.size());
   parallel_for(0, mesh.tets.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {

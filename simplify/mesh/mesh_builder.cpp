@@ -8,6 +8,7 @@
 
 #include "common/mesh/face_buckets.h"
 #include "common/parallel/parallel_sort.h"
+#include "common/parallel/touched_memory.h"
 #include "simplify/tuning/tuning.h"
 #include "tetwright/error.h"
 #include "tetwright/resources.h"
@@ -79,6 +80,7 @@ void MeshBuilder::take_tets(const TetMesh& input) {
     const auto at = std::lower_bound(tags.begin(), tags.end(), tag);
     if (at == tags.end() || *at != tag) tags.insert(at, tag);
   }
+  reserve_touched(mesh_.tets_, input.tets.size());
   mesh_.tets_.resize(input.tets.size());
   mesh_.regions_.resize(input.tets.size());
   mesh_.qualities_.resize(input.tets.size(), 0);

@@ -15,6 +15,7 @@
 #include "common/io/encodings/vtu_blocks.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/text/text_scanner.h"
+#include "common/parallel/touched_memory.h"
 #include "tetwright/error.h"
 #include "tetwright/resources.h"
 
@@ -146,7 +147,9 @@ std::vector<Vec3> VtuData::points(pugi::xml_node piece, std::size_t n) const {
   if (!node) fail(piece, "there are no Points in it");
   const std::vector<double> numbers = this->numbers(node, 3 * n);
   expect_size(node, numbers.size(), 3 * n);
-  std::vector<Vec3> points(n);
+  std::vector<Vec3> points;
+  reserve_touched(points, n);
+  points.resize(n);
   parallel_for(0, n, point_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       points[i] = Vec3(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]);
@@ -364,6 +367,7 @@ std::vector<Value> VtuData::values(pugi::xml_node array, std::size_t max_count) 
            {[&](std::size_t size) {
               if (size % sizeof(Stored) != 0)
                 fail(array, "its size is not a multiple of the size of its numbers");
+              reserve_touched(out, size / sizeof(Stored));
               out.resize(size / sizeof(Stored));
             },
             [&](std::string_view bytes) {

@@ -16,6 +16,7 @@
 #include "common/io/names/mesh_fields.h"
 #include "common/io/names/mesh_parts.h"
 #include "common/io/text/text_scanner.h"
+#include "common/parallel/touched_memory.h"
 #include "tetwright/error.h"
 #include "tetwright/resources.h"
 
@@ -146,6 +147,7 @@ class VtuReader {
     std::vector<Tet>& tets = result_.mesh.tets;
     const std::size_t before = tets.size();
     const Index first_point = first_points_.back();
+    if (before == 0) reserve_touched(tets, types.size());
     tets.resize(before + types.size());
     std::atomic<bool> plain{true};  // relaxed: it only has to become visible eventually
     parallel_for(0, types.size(), cell_grain, [&](std::size_t begin, std::size_t end) {
