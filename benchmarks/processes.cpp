@@ -96,6 +96,10 @@ ProgramRun run_program(const std::vector<std::string>& arguments) {
   ProgramRun run;
   run.seconds = watch.seconds();
   run.status = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  run.cpu_seconds = seconds(usage.ru_utime) + seconds(usage.ru_stime);
   run.peak_bytes = static_cast<std::size_t>(usage.ru_maxrss) * 1024;  // Linux reports KiB
   return run;
 }

@@ -19,6 +19,7 @@ nlohmann::json in_child(const std::function<nlohmann::json()>& work);
 struct ProgramRun {
   int status = 0;              ///< exit status, as in a shell
   double seconds = 0;          ///< wall time
+  double cpu_seconds = 0;      ///< processor time of all threads, also in the system
   std::size_t peak_bytes = 0;  ///< peak resident size
 };
 

@@ -202,6 +202,7 @@ FieldMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
       EstimateTuning::Memory::program + EstimateTuning::Memory::per_leaf * static_cast<double>(octree.size()),
       "an octree of " + std::to_string(octree.size()) + " leaves", "use a lower resolution");
   report.seconds_octree = stages.seconds();
+  report.loops_octree = stages.loops();
 
   stages.begin("lattice");
   LatticePoints points = lattice_points(octree);
@@ -231,10 +232,12 @@ FieldMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   read_star_values(lattice, divided);
   report.lattice_tets = lattice.tets.size();
   report.seconds_lattice = stages.seconds();
+  report.loops_lattice = stages.loops();
 
   stages.begin("moving points");
   snap_vertices(lattice, divided, progress);
   report.seconds_move = stages.seconds();
+  report.loops_move = stages.loops();
 
   stages.begin("cutting");
   lattice.stars.forget_tets();
@@ -259,6 +262,7 @@ FieldMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   }
   result.mesh = to_input_units(std::move(cut), *field);
   report.seconds_cut = stages.seconds();
+  report.loops_cut = stages.loops();
   stages.throw_if_stopped();
 
   result.reference = field;

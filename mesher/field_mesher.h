@@ -13,11 +13,12 @@
 #include "mesher/domain/material_field.h"
 #include "mesher/domain/refinement_regions.h"
 #include "mesher/mesh_estimate.h"
+#include "tetwright/loop_times.h"
 #include "tetwright/mesher.h"
 
 namespace tetwright {
 
-/// Reports the stages of meshing to a Progress (may be null) and measures their times.
+/// Reports the stages of meshing to a Progress (may be null) and measures their times and loops.
 class Stages {
  public:
   explicit Stages(Progress* progress) : progress_(progress) {}
@@ -25,10 +26,12 @@ class Stages {
     throw_if_stopped();
     if (progress_) progress_->begin_stage(name);
     start_ = std::chrono::steady_clock::now();
+    loops_before_ = loop_times();
   }
   double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
+  LoopTimes loops() const { return loop_times() - loops_before_; }
   /// Delegates to Progress.
   void throw_if_stopped() const {
     if (progress_) progress_->throw_if_stopped();
@@ -38,6 +41,7 @@ class Stages {
  private:
   Progress* progress_;
   std::chrono::steady_clock::time_point start_;
+  LoopTimes loops_before_;
 };
 
 /// The edge of a finest cell, input units.

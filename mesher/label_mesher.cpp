@@ -78,6 +78,7 @@ DenseMesh mesh_labels(const LabelInput& labels, const MesherOptions& options, Pr
                                  voxels.to_input(p.first), true});
   if (!options.keep_outside) report.creases = border_creases(labels);
   report.seconds_sdf = stages.seconds();
+  report.loops_sdf = stages.loops();
 
   stages.begin("octree");
   return mesh_field(field, field->interface_voxels(), std::move(thin.finer), options, label_memory(labels),

@@ -224,6 +224,7 @@ class SurfaceMeshing {
     features_ = find_features(input_, options_, report_.cell_size);
     build_distances();
     report_.seconds_sdf = stages_.seconds();
+    report_.loops_sdf = stages_.loops();
 
     stages_.begin("octree");
     find_thin();
@@ -348,6 +349,7 @@ class SurfaceMeshing {
         dense.mesh.patch_groups[{t.pair(), t.patch}] = group;
     dense.reference = features;
     dense.report.seconds_cut += stages_.seconds();
+    dense.report.loops_cut += stages_.loops();
   }
 
   std::size_t filling_tets(const MesherReport& report) const {

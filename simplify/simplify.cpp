@@ -212,6 +212,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
   if (out_of_time(progress)) return not_simplified(std::move(mesh), options, report, progress);
   const bool tuned = options.schedule == Schedule::tuned;
   const auto start = std::chrono::steady_clock::now();
+  const LoopTimes loops_before = loop_times();
   const std::size_t first_count = mesh.tets.size();
   Engine engine(
       std::move(mesh),
@@ -235,11 +236,16 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     if (tuned) engine.input_samples().keep_surface(options.surface, options.tolerance > 0);
   });
   const double build = seconds_since(start);
-  if (report) report->seconds_build = build;
+  const LoopTimes loops_build = loop_times();
+  if (report) {
+    report->seconds_build = build;
+    report->loops_build = loops_build - loops_before;
+  }
   if (!built) return not_simplified(std::move(engine).take(), options, report, progress);
   std::optional<DeviationReport> deviation;
   bool in_time = true;
   double loop_end = build;
+  LoopTimes loops_loop_end = loops_build;
   {
     const EarlierDeadline measuring_has_time(progress, options.tolerance > 0 ? TimeLimit::changing_share : 1);
     in_time = done_in_time([&] {
@@ -251,6 +257,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
         run_paper_schedule(engine, options);
     });
     loop_end = seconds_since(start);
+    loops_loop_end = loop_times();
     if (tuned) {
       // If the deadline prevented the target, the final improvement keeps the current count.
       const std::size_t closing_target = in_time ? target : engine.mesh().live_tets();
@@ -270,6 +277,8 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     report->touching_points = engine.mesh().touching_points();
     report->seconds_simplify = loop_end - build;
     report->seconds_close = seconds_since(start) - loop_end;
+    report->loops_simplify = loops_loop_end - loops_build;
+    report->loops_close = loop_times() - loops_loop_end;
   }
   return std::move(engine).take();
 }
@@ -287,6 +296,7 @@ namespace {
 TetMesh improve_bad_regions(TetMesh&& mesh, const ImproveOptions& options, std::size_t min_tets,
                             std::size_t max_tets, SimplifyReport* report, Progress* progress) {
   const auto start = std::chrono::steady_clock::now();
+  const LoopTimes loops_before = loop_times();
   const std::size_t count = mesh.tets.size();
   Remesher remesher(std::move(mesh), {.objective = options.objective,
                                       .frozen = options.frozen,
@@ -299,6 +309,7 @@ TetMesh improve_bad_regions(TetMesh&& mesh, const ImproveOptions& options, std::
                                       .report = report,
                                       .progress = progress});
   const double build = seconds_since(start);
+  const LoopTimes loops_build = loop_times();
   int rounds = options.max_iterations;
   const auto improve_up_to = [&](double angle) {
     const double bound = shape_quality_bound(options.objective, angle);
@@ -332,6 +343,8 @@ TetMesh improve_bad_regions(TetMesh&& mesh, const ImproveOptions& options, std::
     report->touching_points = remesher.touching_points();
     report->seconds_build = build;
     report->seconds_close = seconds_since(start) - build;
+    report->loops_build = loops_build - loops_before;
+    report->loops_close = loop_times() - loops_build;
   }
   return std::move(remesher).mesh();
 }
@@ -342,6 +355,7 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
   check(mesh, options.frozen, options.name);
   if (out_of_time(progress)) return unchanged(std::move(mesh), report);
   const auto start = std::chrono::steady_clock::now();
+  const LoopTimes loops_before = loop_times();
   const auto count = static_cast<double>(mesh.tets.size());
   const auto min_tets = static_cast<std::size_t>(
       std::ceil(count * (options.free_count ? Improve::min_free : 1 - Improve::slack)));
@@ -356,6 +370,7 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
                 report, progress);
   engine.recorder().begin_stage("improve");
   const double build = seconds_since(start);
+  const LoopTimes loops_build = loop_times();
   engine.rules.error.max = Improve::error_edges * engine.rules.objective.quality.ideal_edge;
   const double below = Improve::margin * options.min_solid_angle;
   // Reserve the last rounds for the end.
@@ -397,6 +412,8 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
     report->touching_points = engine.mesh().touching_points();
     report->seconds_build = build;
     report->seconds_close = seconds_since(start) - build;
+    report->loops_build = loops_build - loops_before;
+    report->loops_close = loop_times() - loops_build;
   }
   return std::move(engine).take();
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Time and memory of `tetwright simplify` as functions of the size of its input, with one thread and two.
+// Time and memory of `tetwright simplify` as functions of the size of its input, with one thread and two; or
+// the serial parts of the stages of `mesh` and `simplify`.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <thread>
 
 #include "benchmarks/processes.h"
+#include "benchmarks/scaling/stage_scaling.h"
 #include "common/samples/samples.h"
 #include "tetwright/error.h"
 #include "tetwright/io.h"
@@ -25,6 +27,8 @@ struct Options {
   double pairs_below = 1.5e6;  ///< larger meshes are simplified once
   std::string surface = "/usr/share/glmark2/models/bunny.obj";
   std::string program, json;
+  bool stages = false;  ///< measure the stages instead
+  bool quick = false;   ///< the stages, with all numbers of threads up to those of the machine
 };
 
 /// Times arithmetic on registers, as a measure of the current speed of the machine's threads.
@@ -61,6 +65,35 @@ class Scaling {
       o_.surface = scratch_ / "knot.ply";
       write_surface(std::get<TriangleMesh>(make_sample("knot")), o_.surface);
     }
+  }
+
+  /// Measures the stages of `mesh` and `simplify`.
+  int run_stages() {
+    std::vector<unsigned> threads{1};
+    if (o_.quick)
+      for (unsigned n = 2; n <= std::thread::hardware_concurrency(); n *= 2) threads.push_back(n);
+    const std::string dense = scratch_ / "dense.vtu", large = scratch_ / "large.vtu",
+                      small = scratch_ / "small.vtu";
+    const StageScaling scaling(o_.program, scratch_ / "stages.json", o_.quick ? 1 : 3);
+    const auto mesh = [&](int resolution, const std::string& path) {
+      return ScaledCall{
+          "mesh --resolution " + std::to_string(resolution),
+          {"mesh", o_.surface, "-o", path, "--accept-changes", "--resolution", std::to_string(resolution)}};
+    };
+    const auto simplify = [&](const std::string& path, int target) {
+      return ScaledCall{"simplify --target-tets " + std::to_string(target),
+                        {"simplify", path, "-o", small, "--target-tets", std::to_string(target)}};
+    };
+    std::printf(
+        "%s. Cores: how many times as fast the stage would be, by its serial part and the number of "
+        "parts of its loops.\n",
+        o_.surface.c_str());
+    // A resolution of 96 gives about half a million tets, 256 about four million.
+    for (const ScaledCall& call :
+         {mesh(96, dense), simplify(dense, 10'000), mesh(256, large), simplify(large, 200'000)})
+      cases_.push_back(scaling.measure(call, threads));
+    write_json({{"surface", o_.surface}, {"cases", cases_}}, o_.json);
+    return 0;
   }
 
   int run() {
@@ -216,10 +249,17 @@ int main(int argc, char** argv) {
   app.add_option("--surface", o.surface, "What is meshed (where it is missing: the sample knot)")
       ->capture_default_str();
   app.add_option("--program", o.program, "tetwright")->capture_default_str();
+  app.add_flag("--stages", o.stages,
+               "Instead, the serial part of each stage of `mesh` and `simplify`, and the speed-ups that it "
+               "implies");
+  app.add_flag("--quick", o.quick,
+               "As --stages, and the speed-ups with 2, 4, 8 ... threads, up to those of the machine; at most "
+               "five minutes");
   app.add_option("--json", o.json, "Write all that was measured to this file");
   CLI11_PARSE(app, argc, argv);
   try {
-    return tetwright::Scaling(o).run();
+    tetwright::Scaling scaling(o);
+    return o.stages || o.quick ? scaling.run_stages() : scaling.run();
   } catch (const std::exception& e) {
     std::fprintf(stderr, "scaling: %s\n", e.what());
     return 1;

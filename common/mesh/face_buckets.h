@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <numeric>
 #include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "common/parallel/bucket_sort.h"
 #include "tetwright/tet_mesh.h"
 
 namespace tetwright {
@@ -36,9 +36,9 @@ inline SortedFace sorted_face(const Tet& tet, int face) {
   return s;
 }
 
-/// Faces of a set of tets, in one bucket for each smallest vertex. Equal faces are in the same bucket, which
-/// is sorted when it is visited. Takes four Codes for each tet; sorting all faces would take eight times as
-/// much.
+/// Faces of a set of tets, in one bucket for each smallest vertex, built in parallel. Equal faces are in the
+/// same bucket, which is sorted when it is visited. Takes four Codes for each tet; sorting all faces would
+/// take eight times as much.
 ///
 /// `Code` numbers a face as 4 * tet + face: std::uint32_t for fewer than 2^30 tets, otherwise std::uint64_t.
 template <class Code>
@@ -65,24 +65,24 @@ class FaceBuckets {
   ///   faces
   template <class TetAt>
   FaceBuckets(std::size_t tets, std::size_t vertices, const TetAt& tet_at,
-              const std::vector<std::uint8_t>* candidates = nullptr)
-      : starts_(vertices + 1, 0) {
-    const auto each_face = [&](const auto& body) {
-      for (std::size_t t = 0; t < tets; ++t) {
-        const Tet& tet = tet_at(t);
-        for (int f = 0; f < 4; ++f) {
-          const auto& c = tet_faces[static_cast<std::size_t>(f)];
-          const Index a = tet[c[0]], b = tet[c[1]], d = tet[c[2]];
-          if (candidates && !((*candidates)[a] && (*candidates)[b] && (*candidates)[d])) continue;
-          body(std::min({a, b, d}), static_cast<Code>(4 * t + static_cast<std::size_t>(f)));
-        }
-      }
-    };
-    each_face([&](Index smallest, Code) { ++starts_[smallest + std::size_t{1}]; });
-    std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
-    faces_.resize(starts_.back());
-    std::vector<Code> next(starts_.begin(), starts_.end() - 1);
-    each_face([&](Index smallest, Code face) { faces_[next[smallest]++] = face; });
+              const std::vector<std::uint8_t>* candidates = nullptr) {
+    bucket_sort(
+        tets, vertices,
+        [&](std::size_t t, const auto& emit) {
+          const Tet& tet = tet_at(t);
+          for (int f = 0; f < 4; ++f) {
+            const auto& c = tet_faces[static_cast<std::size_t>(f)];
+            const Index a = tet[c[0]], b = tet[c[1]], d = tet[c[2]];
+            if (candidates && !((*candidates)[a] && (*candidates)[b] && (*candidates)[d])) continue;
+            emit(std::min({a, b, d}), static_cast<Code>(4 * t + static_cast<std::size_t>(f)));
+          }
+        },
+        [&](Code face) {
+          const Tet& tet = tet_at(face / 4);
+          const auto& c = tet_faces[face % 4];
+          return std::min({tet[c[0]], tet[c[1]], tet[c[2]]});
+        },
+        starts_, faces_);
   }
 
   /// Calls `body(vertices, uses)` for each face whose smallest vertex is `vertex`, in lexicographic order of

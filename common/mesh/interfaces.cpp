@@ -3,13 +3,11 @@
 
 #include <algorithm>
 
-#include "common/parallel/parallel_sort.h"
+#include "common/mesh/face_collection.h"
 
 namespace tetwright {
 
 namespace {
-
-constexpr std::size_t face_grain = 1 << 14;  // faces for each task; a face takes a few nanoseconds
 
 /// A face of a tet with the normal pointing out, starting at its smallest id.
 Triangle outward_face(const Tet& tet, const Triangle& ids) {
@@ -25,20 +23,18 @@ Triangle outward_face(const Tet& tet, const Triangle& ids) {
 
 std::vector<InterfaceTriangle> find_interfaces(const TetMesh& mesh,
                                                const std::vector<std::uint8_t>* candidates) {
-  const std::vector<MeshFace> faces = mesh_faces(mesh.tets, mesh.points.size(), candidates);
-  return parallel_collect<InterfaceTriangle>(
-      0, faces.size(), face_grain,
-      [&](std::size_t begin, std::size_t end, std::vector<InterfaceTriangle>& out) {
-        for (std::size_t i = begin; i < end; ++i) {
-          const MeshFace& f = faces[i];
-          const MaterialTag first = mesh.materials[f.first];
-          if (f.count == 1) {
-            out.push_back({outward_face(mesh.tets[f.first], f.ids), first, std::nullopt});
-          } else if (const MaterialTag second = mesh.materials[f.second]; f.count == 2 && first != second) {
-            const Index smaller = first < second ? f.first : f.second;
-            out.push_back(
-                {outward_face(mesh.tets[smaller], f.ids), std::min(first, second), std::max(first, second)});
-          }
+  return collect_from_faces<InterfaceTriangle>(
+      mesh.tets, mesh.points.size(), candidates,
+      [&](const Triangle& vertices, Index first, Index second, std::size_t count,
+          std::vector<InterfaceTriangle>& out) {
+        const MaterialTag tag = mesh.materials[first];
+        if (count == 1) {
+          out.push_back({outward_face(mesh.tets[first], vertices), tag, std::nullopt});
+        } else if (count == 2 && tag != mesh.materials[second]) {
+          const MaterialTag other = mesh.materials[second];
+          const Index smaller = tag < other ? first : second;
+          out.push_back(
+              {outward_face(mesh.tets[smaller], vertices), std::min(tag, other), std::max(tag, other)});
         }
       });
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/geometry/predicates.h"
+#include "common/mesh/dihedral_counter.h"
 #include "common/parallel/parallel_sort.h"
 #include "tetwright/resources.h"
 
@@ -21,20 +22,13 @@ struct PartStatistics {
   double min_angle = std::numeric_limits<double>::infinity();
   double sum_angle = 0;
   std::size_t below = 0;
-  double min_dihedral = std::numeric_limits<double>::infinity();
-  double max_dihedral = -std::numeric_limits<double>::infinity();
-  DihedralHistogram dihedrals;
+  DihedralCounter dihedrals;
 };
 
 std::uint8_t angle_bin(double angle) {
   static_assert(QualityHistogram::angle_bins <= 256);
   return static_cast<std::uint8_t>(std::min(QualityHistogram::angle_bins - 1,
                                             static_cast<std::size_t>(angle / QualityHistogram::angle_step)));
-}
-
-/// \param degrees 0 to 180
-std::size_t dihedral_bin(double degrees) {
-  return std::min(DihedralHistogram::bins - 1, static_cast<std::size_t>(degrees / DihedralHistogram::step));
 }
 
 /// Lower ends of all bins but the first, relative to the mean volume. Half steps are factors of sqrt(2); no
@@ -137,12 +131,7 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
       part.min_angle = std::min(part.min_angle, angle);
       part.sum_angle += angle;
       part.below += angle < threshold;
-      for (double dihedral : dihedral_angles(x)) {
-        // NaN at a degenerate face: both comparisons are false.
-        if (dihedral < part.min_dihedral) part.min_dihedral = dihedral;
-        if (dihedral > part.max_dihedral) part.max_dihedral = dihedral;
-        if (!std::isnan(dihedral)) ++part.dihedrals.counts[dihedral_bin(dihedral)];
-      }
+      part.dihedrals.add(x);
       bin_of_angle[t] = angle_bin(angle);
     }
   });
@@ -156,10 +145,7 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
     all.min_angle = std::min(all.min_angle, part.min_angle);
     all.sum_angle += part.sum_angle;
     all.below += part.below;
-    all.min_dihedral = std::min(all.min_dihedral, part.min_dihedral);
-    all.max_dihedral = std::max(all.max_dihedral, part.max_dihedral);
-    for (std::size_t b = 0; b < DihedralHistogram::bins; ++b)
-      out.dihedrals.counts[b] += part.dihedrals.counts[b];
+    all.dihedrals.add(part.dihedrals);
   }
   for (auto& [tag, material] : out.materials) {
     out.volume += material.volume;
@@ -171,9 +157,10 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
   out.mean_solid_angle = all.sum_angle / n;
   out.below_count = all.below;
   out.below_percent = 100 * static_cast<double>(all.below) / n;
-  if (all.min_dihedral <= all.max_dihedral) {
-    out.min_dihedral = all.min_dihedral;
-    out.max_dihedral = all.max_dihedral;
+  out.dihedrals = all.dihedrals.histogram();
+  if (all.dihedrals.min() <= all.dihedrals.max()) {
+    out.min_dihedral = all.dihedrals.min();
+    out.max_dihedral = all.dihedrals.max();
   }
 
   out.histogram = histogram(mesh, bin_of_angle, out.volume / n);

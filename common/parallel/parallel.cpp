@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/parallel/counted_loop.h"
 #include "common/parallel/host_threads.h"
 #include "common/parallel/tbb_loop.h"
 
@@ -113,6 +114,7 @@ void parallel_for(std::size_t begin, std::size_t end, std::size_t grain,
   if (begin >= end) return;
   grain = std::max<std::size_t>(1, grain);
   const std::size_t parts = (end - begin + grain - 1) / grain;
+  const CountedLoop counted(parts);
   const auto part = [&](std::size_t i) { body(begin + i * grain, std::min(end, begin + (i + 1) * grain)); };
   if (thread_count() == 1 || parts == 1) {
     for (std::size_t i = 0; i < parts; ++i) part(i);
@@ -123,6 +125,7 @@ void parallel_for(std::size_t begin, std::size_t end, std::size_t grain,
 
 void parallel_chunks(std::size_t chunks, const std::function<void(std::size_t, unsigned)>& body) {
   const unsigned workers = static_cast<unsigned>(std::min<std::size_t>(thread_count(), chunks));
+  const CountedLoop counted(chunks);
   if (workers <= 1) {
     for (std::size_t i = 0; i < chunks; ++i) body(i, 0);
     return;

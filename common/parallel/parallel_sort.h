@@ -11,28 +11,52 @@
 
 namespace tetwright {
 
+/// Number of items of the sorted `a` among the first `count` of its merge with the sorted `b`, in which items
+/// of `a` precede equivalent ones of `b`.
+template <class Iterator, class Less>
+std::ptrdiff_t merged_from_first(Iterator a, std::ptrdiff_t a_size, Iterator b, std::ptrdiff_t b_size,
+                                 std::ptrdiff_t count, const Less& less) {
+  std::ptrdiff_t low = std::max<std::ptrdiff_t>(0, count - b_size), high = std::min(count, a_size);
+  while (low < high) {
+    const std::ptrdiff_t middle = low + (high - low) / 2;
+    if (less(b[count - middle - 1], a[middle]))
+      high = middle;
+    else
+      low = middle + 1;
+  }
+  return low;
+}
+
 /// Sorts by `less`; the result does not depend on the number of threads. Needs memory for a second copy.
-/// \pre `less` is a total order in which equivalent items are indistinguishable
+/// Parts are sorted and merged pair by pair; a merge is divided into pieces of equal length (merge path:
+/// Odeh, Green, Mwassi, Shmueli & Birk 2012). \pre `less` is a total order in which equivalent items are
+/// indistinguishable
 template <class T, class Less = std::less<>>
 void parallel_sort(std::vector<T>& items, const Less& less = {}) {
-  constexpr std::size_t min_chunk = 1 << 13;  // starting a task for fewer items costs more than it saves
-  std::size_t chunk = std::max(min_chunk, items.size() / (4 * thread_count()) + 1);
-  const auto bound = [&](std::size_t i) {
-    return items.begin() + static_cast<std::ptrdiff_t>(std::min(items.size(), i));
+  constexpr std::size_t min_part = 1 << 13;  // starting a task for fewer items costs more than it saves
+  constexpr std::size_t max_parts = 64;      // each doubling costs another pass over the items
+  const std::size_t size = items.size(), part = std::max(min_part, (size + max_parts - 1) / max_parts);
+  const auto at = [](std::vector<T>& of, std::size_t i) {
+    return of.begin() + static_cast<std::ptrdiff_t>(i);
   };
-  const std::size_t chunks = (items.size() + chunk - 1) / chunk;
-  parallel_for(0, chunks, 1, [&](std::size_t first, std::size_t last) {
-    for (std::size_t c = first; c < last; ++c) std::sort(bound(c * chunk), bound((c + 1) * chunk), less);
+  parallel_for(0, size, part, [&](std::size_t begin, std::size_t end) {
+    std::sort(at(items, begin), at(items, end), less);
   });
-  if (chunks <= 1) return;
-  std::vector<T> buffer(items.size());
-  for (; chunk < items.size(); chunk *= 2) {
-    const std::size_t pairs = (items.size() + 2 * chunk - 1) / (2 * chunk);
-    parallel_for(0, pairs, 1, [&](std::size_t first, std::size_t last) {
-      for (std::size_t c = first; c < last; ++c)
-        std::merge(bound(2 * c * chunk), bound((2 * c + 1) * chunk), bound((2 * c + 1) * chunk),
-                   bound((2 * c + 2) * chunk), buffer.begin() + static_cast<std::ptrdiff_t>(2 * c * chunk),
-                   less);
+  if (size <= part) return;
+  std::vector<T> buffer(size);
+  for (std::size_t width = part; width < size; width *= 2) {
+    // `width` is a multiple of `part`, so each piece of the result belongs to a single pair.
+    parallel_for(0, size, part, [&](std::size_t begin, std::size_t end) {
+      const std::size_t pair = begin / (2 * width) * (2 * width), middle = std::min(size, pair + width),
+                        pair_end = std::min(size, pair + 2 * width);
+      const auto a = at(items, pair), b = at(items, middle);
+      const auto from_a = [&](std::size_t count) {
+        return merged_from_first(a, b - a, b, at(items, pair_end) - b, static_cast<std::ptrdiff_t>(count),
+                                 less);
+      };
+      const std::ptrdiff_t a_begin = from_a(begin - pair), a_end = from_a(end - pair);
+      std::merge(a + a_begin, a + a_end, b + (static_cast<std::ptrdiff_t>(begin - pair) - a_begin),
+                 b + (static_cast<std::ptrdiff_t>(end - pair) - a_end), at(buffer, begin), less);
     });
     std::swap(items, buffer);
   }

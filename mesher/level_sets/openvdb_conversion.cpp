@@ -8,6 +8,7 @@
 
 #include <stdexcept>
 
+#include "common/parallel/counted_loop.h"
 #include "mesher/level_sets/openvdb_types.h"
 #include "tetwright/resources.h"
 
@@ -79,6 +80,7 @@ DistanceGrid DistanceGrid::unsigned_distances(std::span<const Vec3> points,
                                               std::span<const Triangle> triangles, Progress* progress) {
   initialise_openvdb();
   Interrupter interrupter{progress};
+  const CountedLoop counted(CountedLoop::divided_by_library);
   auto grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
       interrupter, MeshAdapter{points, triangles}, *openvdb::math::Transform::createLinearTransform(1.0),
       static_cast<float>(level_set_band), static_cast<float>(level_set_band),
@@ -90,12 +92,14 @@ DistanceGrid DistanceGrid::unsigned_distances(std::span<const Vec3> points,
 
 void DistanceGrid::fill_outside_band() {
   constexpr auto band = static_cast<float>(level_set_band);
+  const CountedLoop counted(CountedLoop::divided_by_library);
   openvdb::tools::signedFloodFillWithValues(impl_->grid->tree(), band, -band);
 }
 
 void DistanceGrid::fill_tiles_outside_band(double band) {
   constexpr openvdb::Index level_above_leaves = 1;
   const auto value = static_cast<float>(band);
+  const CountedLoop counted(CountedLoop::divided_by_library);
   openvdb::tools::signedFloodFillWithValues(impl_->grid->tree(), value, -value, true, 1, level_above_leaves);
 }
 
@@ -107,7 +111,10 @@ TriangleMesh DistanceGrid::zero_surface() const try {
   std::vector<openvdb::Vec3s> points;
   std::vector<openvdb::Vec3I> triangles;
   std::vector<openvdb::Vec4I> quads;
-  openvdb::tools::volumeToMesh(*local, points, triangles, quads, 0.0, 0.0);
+  {
+    const CountedLoop counted(CountedLoop::divided_by_library);
+    openvdb::tools::volumeToMesh(*local, points, triangles, quads, 0.0, 0.0);
+  }
 
   TriangleMesh mesh;
   if (quads.empty() && triangles.empty()) return mesh;

@@ -2,12 +2,13 @@
 #include "simplify/mesh/compaction.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <type_traits>
 
 #include "common/geometry/morton.h"
+#include "common/parallel/bucket_sort.h"
 #include "common/parallel/parallel_sort.h"
+#include "common/parallel/touched_memory.h"
 #include "simplify/tuning/tuning.h"
 #include "tetwright/mesh_quality.h"
 #include "tetwright/resources.h"
@@ -23,33 +24,36 @@ using Grains = SimplifyTuning::Grains;
 
 std::vector<Index> MeshCompaction::points_in_curve_order() const {
   const std::vector<Vec3>& positions = mesh_.positions_;
-  Vec3 low = Vec3::Constant(std::numeric_limits<double>::infinity()), high = -low;
-  for (std::size_t p = 0; p < positions.size(); ++p)
-    if (mesh_.incident_tets_[p] != no_index) {
-      low = low.cwiseMin(positions[p]);
-      high = high.cwiseMax(positions[p]);
-    }
-  const MortonGrid grid(low, high);
+  const Box3 box = mesh_.bounding_box();
+  const MortonGrid grid(box.low, box.high);
   struct Key {
     std::uint64_t morton;
     Index point;
   };
-  std::vector<Key> keys;
-  keys.reserve(positions.size());
-  for (std::size_t p = 0; p < positions.size(); ++p)
-    if (mesh_.incident_tets_[p] != no_index) keys.push_back({grid.key(positions[p]), static_cast<Index>(p)});
+  std::vector<Key> keys = parallel_collect<Key>(
+      0, positions.size(), Grains::slots, [&](std::size_t begin, std::size_t end, std::vector<Key>& out) {
+        for (std::size_t p = begin; p < end; ++p)
+          if (mesh_.incident_tets_[p] != no_index)
+            out.push_back({grid.key(positions[p]), static_cast<Index>(p)});
+      });
   parallel_sort(keys, [](const Key& a, const Key& b) {
     return a.morton != b.morton ? a.morton < b.morton : a.point < b.point;
   });
   std::vector<Index> order(keys.size());
-  for (std::size_t i = 0; i < keys.size(); ++i) order[i] = keys[i].point;
+  parallel_for(0, keys.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) order[i] = keys[i].point;
+  });
   return order;
 }
 
 void MeshCompaction::move_points(const std::vector<Index>& order, const std::vector<Index>& new_point,
                                  std::size_t spare) {
-  std::vector<Vec3> positions(order.size() + spare, Vec3::Zero());
-  for (std::size_t i = 0; i < order.size(); ++i) positions[i] = mesh_.positions_[order[i]];
+  std::vector<Vec3> positions;
+  reserve_touched(positions, order.size() + spare);
+  positions.resize(order.size() + spare, Vec3::Zero());
+  parallel_for(0, order.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) positions[i] = mesh_.positions_[order[i]];
+  });
   mesh_.positions_ = std::move(positions);
   if (mesh_.any_frozen()) {
     std::vector<std::uint8_t> frozen(mesh_.positions_.size(), 0);
@@ -68,22 +72,26 @@ void MeshCompaction::move_points(const std::vector<Index>& order, const std::vec
 
 std::vector<Index> MeshCompaction::number_tets(const std::vector<Index>& new_point, std::size_t points,
                                                std::size_t& live) const {
-  // A counting sort.
-  std::vector<Index> next(points + 1, 0);
-  const auto first_point = [&](const TetRecord& t) {
-    return std::min(std::min(new_point[t.points[0]], new_point[t.points[1]]),
-                    std::min(new_point[t.points[2]], new_point[t.points[3]]));
+  const auto first_point = [&](Index t) {
+    const Tet& ids = mesh_.tets_[t].points;
+    return std::min(std::min(new_point[ids[0]], new_point[ids[1]]),
+                    std::min(new_point[ids[2]], new_point[ids[3]]));
   };
-  live = 0;
-  for (const TetRecord& t : mesh_.tets_)
-    if (t.points[0] != no_index) {
-      ++next[first_point(t) + 1];
-      ++live;
-    }
-  std::partial_sum(next.begin(), next.end(), next.begin());
-  std::vector<Index> new_tet(mesh_.tets_.size(), no_index);
-  for (std::size_t t = 0; t < mesh_.tets_.size(); ++t)
-    if (mesh_.tets_[t].points[0] != no_index) new_tet[t] = next[first_point(mesh_.tets_[t])]++;
+  std::vector<Index> starts, order;
+  bucket_sort(
+      mesh_.tets_.size(), points,
+      [&](std::size_t i, const auto& emit) {
+        const auto t = static_cast<Index>(i);
+        if (mesh_.tets_[t].points[0] != no_index) emit(first_point(t), t);
+      },
+      first_point, starts, order);
+  live = order.size();
+  std::vector<Index> new_tet;
+  reserve_touched(new_tet, mesh_.tets_.size());
+  new_tet.resize(mesh_.tets_.size(), no_index);
+  parallel_for(0, live, Grains::slots, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) new_tet[order[i]] = static_cast<Index>(i);
+  });
   return new_tet;
 }
 
@@ -92,7 +100,9 @@ void MeshCompaction::move_tets(const std::vector<Index>& new_point, const std::v
   // Move one array after the other: memory peaks while both old and new tets exist.
   const std::size_t slots = mesh_.tets_.size();
   {
-    std::vector<TetRecord> tets(live + spare, {dead_tet, {}});
+    std::vector<TetRecord> tets;
+    reserve_touched(tets, live + spare);
+    tets.resize(live + spare, {dead_tet, {}});
     parallel_for(0, slots, Grains::slots, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t) {
         if (new_tet[t] == no_index) continue;
@@ -106,7 +116,9 @@ void MeshCompaction::move_tets(const std::vector<Index>& new_point, const std::v
     mesh_.tets_ = std::move(tets);
   }
   const auto move = [&](auto& values) {
-    std::remove_reference_t<decltype(values)> moved(live + spare, 0);
+    std::remove_reference_t<decltype(values)> moved;
+    reserve_touched(moved, live + spare);
+    moved.resize(live + spare, 0);
     parallel_for(0, slots, Grains::slots, [&](std::size_t begin, std::size_t end) {
       for (std::size_t t = begin; t < end; ++t)
         if (new_tet[t] != no_index) moved[new_tet[t]] = values[t];
@@ -123,7 +135,9 @@ void MeshCompaction::run(std::size_t spare_tets, std::size_t spare_points, SlotN
   {
     const std::vector<Index> order = points_in_curve_order();
     points = order.size();
-    for (std::size_t i = 0; i < order.size(); ++i) new_point[order[i]] = static_cast<Index>(i);
+    parallel_for(0, points, Grains::slots, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) new_point[order[i]] = static_cast<Index>(i);
+    });
     move_points(order, new_point, spare_points);
   }
   std::size_t live = 0;
@@ -159,15 +173,21 @@ TetMesh MeshCompaction::to_mesh() {
   TetMesh mesh;
   mesh.points = std::move(mesh_.positions_);
   for (std::size_t p = 0; p < number.size(); ++p)
-    if (is_original(p)) mesh.points[number[p]] = mesh_.space_.to_input(mesh.points[p]);
+    if (is_original(p)) mesh.points[number[p]] = mesh.points[p];
   mesh.points.resize(next);
-  mesh.tets.reserve(mesh_.tets_.size());
-  mesh.materials.reserve(mesh_.tets_.size());
-  for (std::size_t i = 0; i < mesh_.tets_.size(); ++i) {
-    const Tet& t = mesh_.tets_[i].points;
-    mesh.tets.push_back({number[t[0]], number[t[1]], number[t[2]], number[t[3]]});
-    mesh.materials.push_back(mesh_.tags_[mesh_.regions_[i]]);
-  }
+  parallel_for(0, mesh.points.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) mesh.points[p] = mesh_.space_.to_input(mesh.points[p]);
+  });
+  reserve_touched(mesh.tets, mesh_.tets_.size());
+  mesh.tets.resize(mesh_.tets_.size());
+  mesh.materials.resize(mesh_.tets_.size());
+  parallel_for(0, mesh.tets.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Tet& t = mesh_.tets_[i].points;
+      mesh.tets[i] = {number[t[0]], number[t[1]], number[t[2]], number[t[3]]};
+      mesh.materials[i] = mesh_.tags_[mesh_.regions_[i]];
+    }
+  });
   const FacePatches patches = this->patches(number);
   std::vector<InterfaceTriangle> sheets = mesh_.sheets(number);
   mesh.material_names = std::move(mesh_.names_);

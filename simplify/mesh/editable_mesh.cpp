@@ -2,8 +2,8 @@
 #include "simplify/mesh/editable_mesh.h"
 
 #include <algorithm>
+#include <atomic>
 
-#include "common/geometry/box_tree.h"
 #include "common/geometry/predicates.h"
 #include "common/mesh/face_buckets.h"
 #include "common/parallel/parallel_sort.h"
@@ -46,10 +46,21 @@ void EditableMesh::reserve_twice() {
 TetMesh EditableMesh::to_mesh() && { return MeshCompaction(*this).to_mesh(); }
 
 void EditableMesh::set_incident_tets() {
+  // The first tet of each point.
   incident_tets_.assign(positions_.size(), no_index);
-  for (std::size_t t = tets_.size(); t-- > 0;)
-    if (tets_[t].points[0] != no_index)
-      for (Index p : tets_[t].points) incident_tets_[p] = static_cast<Index>(t);
+  parallel_for(0, tets_.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (tets_[i].points[0] == no_index) continue;
+      const auto t = static_cast<Index>(i);
+      for (Index p : tets_[i].points) {
+        // Relaxed: the values are read after the loop.
+        const std::atomic_ref<Index> first(incident_tets_[p]);
+        Index known = first.load(std::memory_order_relaxed);
+        while (t < known && !first.compare_exchange_weak(known, t, std::memory_order_relaxed)) {
+        }
+      }
+    }
+  });
 }
 
 void EditableMesh::freeze(const std::vector<std::uint8_t>& mask) {
@@ -153,10 +164,20 @@ double EditableMesh::total_volume() const {
   });
 }
 
+Box3 EditableMesh::bounding_box() const {
+  constexpr std::size_t grain = 16 * Grains::slots;
+  std::vector<Box3> boxes((positions_.size() + grain - 1) / grain);
+  parallel_for(0, positions_.size(), grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p)
+      if (incident_tets_[p] != no_index) boxes[begin / grain].add(positions_[p]);
+  });
+  Box3 all;
+  for (const Box3& box : boxes) all.add(box);
+  return all;
+}
+
 double EditableMesh::diagonal() const {
-  Box3 box;
-  for (std::size_t p = 0; p < positions_.size(); ++p)
-    if (incident_tets_[p] != no_index) box.add(positions_[p]);
+  const Box3 box = bounding_box();
   return (box.high - box.low).norm();
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "common/geometry/box_tree.h"
 #include "simplify/mesh/face_patches.h"
 #include "simplify/mesh/free_slots.h"
 #include "simplify/mesh/reservations.h"
@@ -199,7 +200,9 @@ class EditableMesh {
   double signed_volume(Index t) const;
   /// Sum of the signed volumes, working coordinates cubed.
   double total_volume() const;
-  /// Diagonal of the live points' bounding box, working coordinates.
+  /// Bounding box of the live points, working coordinates.
+  Box3 bounding_box() const;
+  /// Its diagonal.
   double diagonal() const;
   /// Whether all tets are positive, by exact sign.
   bool all_positive() const;

@@ -8,6 +8,7 @@
 
 #include "common/mesh/face_buckets.h"
 #include "common/parallel/parallel_sort.h"
+#include "common/parallel/touched_memory.h"
 #include "simplify/tuning/tuning.h"
 #include "tetwright/error.h"
 #include "tetwright/resources.h"
@@ -56,12 +57,19 @@ void MeshBuilder::build(TetMesh&& input) {
 }
 
 void MeshBuilder::take_points(std::vector<Vec3>&& points) {
-  for (const Vec3& p : points)
-    if (!p.allFinite()) throw InputError(name_, 0, "a coordinate is not finite");
+  std::atomic<bool> finite{true};  // relaxed: it only has to become visible eventually
+  parallel_for(0, points.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p)
+      if (!points[p].allFinite()) finite.store(false, std::memory_order_relaxed);
+  });
+  if (!finite.load()) throw InputError(name_, 0, "a coordinate is not finite");
   mesh_.space_ = WorkingSpace::of(points);
   if (!mesh_.space_.valid()) throw InputError(name_, 0, "coordinates are too far apart");
   mesh_.positions_ = std::move(points);
-  for (Vec3& p : mesh_.positions_) p = mesh_.space_.to_working(p);
+  parallel_for(0, mesh_.positions_.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p)
+      mesh_.positions_[p] = mesh_.space_.to_working(mesh_.positions_[p]);
+  });
 }
 
 void MeshBuilder::take_tets(const TetMesh& input) {
@@ -72,6 +80,7 @@ void MeshBuilder::take_tets(const TetMesh& input) {
     const auto at = std::lower_bound(tags.begin(), tags.end(), tag);
     if (at == tags.end() || *at != tag) tags.insert(at, tag);
   }
+  reserve_touched(mesh_.tets_, input.tets.size());
   mesh_.tets_.resize(input.tets.size());
   mesh_.regions_.resize(input.tets.size());
   mesh_.qualities_.resize(input.tets.size(), 0);
@@ -229,6 +238,20 @@ void MeshBuilder::take_patches(const std::vector<InterfaceTriangle>& interfaces)
 }
 
 std::vector<Index> MeshBuilder::points_with_split_stars() const {
+  // Each tet is in a part of the stars of its four points; if no star is split, the first parts have all.
+  std::atomic<std::size_t> in_first_parts{0};
+  parallel_for(0, mesh_.positions_.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
+    LocalNumbers seen;
+    std::vector<Index> part;
+    std::size_t sum = 0;
+    for (std::size_t p = begin; p < end; ++p) {
+      if (mesh_.incident_tets_[p] == no_index) continue;
+      part_of_star(static_cast<Index>(p), mesh_.incident_tets_[p], seen, part);
+      sum += part.size();
+    }
+    in_first_parts.fetch_add(sum, std::memory_order_relaxed);
+  });
+  if (in_first_parts.load() == 4 * mesh_.tets_.size()) return {};
   std::vector<Index> tets_at(mesh_.positions_.size(), 0);
   for (const TetRecord& t : mesh_.tets_)
     for (Index p : t.points) ++tets_at[p];
@@ -245,13 +268,16 @@ std::vector<Index> MeshBuilder::points_with_split_stars() const {
 }
 
 std::vector<Index> MeshBuilder::points_of_glued_tets() const {
-  std::vector<Index> points;
-  for (const TetRecord& t : mesh_.tets_)
-    for (std::size_t k = 0; k < 4; ++k)
-      for (std::size_t l = 0; l < k; ++l)
-        if (!t.links[k].is_outside() && t.links[k].tet() == t.links[l].tet())
-          points.insert(points.end(), t.points.begin(), t.points.end());
-  return points;
+  return parallel_collect<Index>(0, mesh_.tets_.size(), Grains::slots,
+                                 [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+                                   for (std::size_t i = begin; i < end; ++i) {
+                                     const TetRecord& t = mesh_.tets_[i];
+                                     for (std::size_t k = 0; k < 4; ++k)
+                                       for (std::size_t l = 0; l < k; ++l)
+                                         if (!t.links[k].is_outside() && t.links[k].tet() == t.links[l].tet())
+                                           out.insert(out.end(), t.points.begin(), t.points.end());
+                                   }
+                                 });
 }
 
 std::vector<std::array<Index, 2>> MeshBuilder::split_points(const std::vector<Index>& split,

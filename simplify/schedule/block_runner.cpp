@@ -68,11 +68,11 @@ void maybe_yield() {
 #endif
 }
 
-/// Runs chunks in parallel, or in this thread if there are few.
-void for_chunks(std::size_t count, std::size_t chunk,
+/// Runs chunks in parallel, or in this thread if there are fewer than `min_parallel` items.
+void for_chunks(std::size_t count, std::size_t chunk, std::size_t min_parallel,
                 const std::function<void(std::size_t begin, std::size_t end, unsigned worker)>& body) {
   const std::size_t chunks = (count + chunk - 1) / chunk;
-  if (chunks < Batches::min_parallel_chunks) {
+  if (count < min_parallel) {
     body(0, count, 0);
     return;
   }
@@ -103,10 +103,12 @@ void BlockRunner::make_workers() {
 }
 
 void BlockRunner::decide(const std::function<Outcome(Workspace&, const Entry&)>& decide_entry,
-                         std::size_t chunk) {
+                         bool in_order) {
   outcomes_.assign(batch_.size(), Outcome::stale);
   if (proposals_.size() < batch_.size()) proposals_.resize(batch_.size());
-  for_chunks(batch_.size(), chunk, [&](std::size_t begin, std::size_t end, unsigned worker) {
+  const std::size_t chunk = in_order ? Batches::chunk_in_order : Batches::chunk_shuffled,
+                    min_parallel = in_order ? Batches::min_parallel_in_order : Batches::min_parallel_shuffled;
+  for_chunks(batch_.size(), chunk, min_parallel, [&](std::size_t begin, std::size_t end, unsigned worker) {
     const WriteRule::Deciding rule;
     Workspace& ws = workers_[worker]->workspace;
     workers_[worker]->decided += end - begin;
@@ -164,7 +166,7 @@ bool BlockRunner::select(const Stop& stop) {
 }
 
 void BlockRunner::commit_winners() {
-  for_chunks(winners_.size(), Batches::commit_chunk,
+  for_chunks(winners_.size(), Batches::commit_chunk, Batches::min_parallel_shuffled,
              [&](std::size_t begin, std::size_t end, unsigned worker) {
                for (std::size_t i = begin; i < end; ++i) {
                  maybe_yield();
@@ -209,7 +211,7 @@ void BlockRunner::run(const std::vector<Item>& items, bool in_order, const Attem
     batch_ = again_;
     while (batch_.size() < batch && !order.empty()) batch_.push_back({order.take(), 0});
     ++totals_.batches;
-    decide(decide_entry, in_order ? Batches::chunk_in_order : Batches::chunk_shuffled);
+    decide(decide_entry, in_order);
     const bool goes_on = select(stop);
     totals_.conflicts += lost_;
     commit_winners();

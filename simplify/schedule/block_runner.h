@@ -81,7 +81,7 @@ class BlockRunner {
   template <class Item, class Attempt>
   void run(const std::vector<Item>& items, bool in_order, const Attempt& attempt, const Stop& stop);
   /// Decides the entries of batch_; fills outcomes_ and proposals_.
-  void decide(const std::function<Outcome(Workspace&, const Entry&)>& decide_entry, std::size_t chunk);
+  void decide(const std::function<Outcome(Workspace&, const Entry&)>& decide_entry, bool in_order);
   /// Fills winners_ and again_; false if `stop` ended the block.
   bool select(const Stop& stop);
   Outcome admit(Proposal& proposal);

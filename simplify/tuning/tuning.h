@@ -216,10 +216,11 @@ struct SimplifyTuning {
     static constexpr double max_lost_share = 0.3;
     /// Min size of a reduced batch.
     static constexpr std::size_t min_shrunk_size = 16;
-    /// Items that a thread decides, and winners that it commits, at a time. Results do not depend on these.
-    static constexpr std::size_t chunk_in_order = 2, chunk_shuffled = 16, commit_chunk = 16;
-    /// Min number of chunks that is worth waking other threads.
-    static constexpr std::size_t min_parallel_chunks = 3;
+    /// Items that a thread decides, and winners that it commits, at a time: some ten microseconds, so that
+    /// the smallest batch has work for 64 threads. Results do not depend on these.
+    static constexpr std::size_t chunk_in_order = 2, chunk_shuffled = 4, commit_chunk = 4;
+    /// Min number of items or winners that is worth waking other threads.
+    static constexpr std::size_t min_parallel_in_order = 5, min_parallel_shuffled = 33;
   };
 
   /// The block iteration of both schedules: values from the paper, and for details that it leaves open.

@@ -12,6 +12,7 @@ void assess(const TetMesh& mesh, PrepareRun& run) {
   PrepareReport& report = run.report;
   report.material_names = mesh.material_names;
   report.seconds_total = run.since_start.seconds();
+  report.loops_total = run.since_start.loops();
   if (report.simplify) {
     report.result = mesh_statistics(mesh, run.options.shapes.bound());
     report.input_limited = input_limited_tets(mesh, report.creases, run.options.shapes.bound());
@@ -22,6 +23,7 @@ void assess(const TetMesh& mesh, PrepareRun& run) {
   find_input_changes(mesh, run);
   decide_severities(run.options.acceptance, report);
   report.seconds_total = run.since_start.seconds();
+  report.loops_total = run.since_start.loops();
 }
 
 }  // namespace tetwright

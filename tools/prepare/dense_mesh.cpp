@@ -146,6 +146,7 @@ DenseMesh make_dense_mesh(ScanInput input, PrepareRun& run) {
   run.report.creases = std::move(dense.report.creases);
   run.report.mesher = std::move(dense.report);
   run.report.seconds_mesh = watch.seconds();
+  run.report.loops_mesh = watch.loops();
   // Fraction of the meshing time needed to compare and write the mesh: 5 s of 20 (4.3 million tets of
   // dragon_vrip_res2.ply, --resolution 200).
   constexpr double finishing_share = 0.25;

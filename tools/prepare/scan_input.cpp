@@ -266,6 +266,7 @@ ScanInput read_scan(std::vector<Input> inputs, PrepareRun& run) {
                         ? ScanInput(read_labels(std::move(vdb_labels), inputs.front(), run))
                         : ScanInput(read_surfaces(inputs, run));
   run.report.seconds_read = watch.seconds();
+  run.report.loops_read = watch.loops();
   return input;
 }
 

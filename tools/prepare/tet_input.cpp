@@ -77,6 +77,7 @@ TetInput read_tets(Input from, PrepareRun& run) {
   run.progress.throw_if_stopped();
   run.report.creases = mesh_creases(input.mesh);
   run.report.seconds_read = watch.seconds();
+  run.report.loops_read = watch.loops();
   // Comparing and writing a mesh take as long as reading it (5 s for each of these, for the 4.3 million tets
   // of dragon_vrip_res2.ply at --resolution 200); a simplified mesh takes less.
   const double finishing = run.report.seconds_read - run.seconds_waited;

@@ -11,6 +11,7 @@
 #include "tetwright/resources.h"
 #include "tools/report/diagnostics_json.h"
 #include "tools/report/features_json.h"
+#include "tools/report/stage_times_json.h"
 
 namespace tetwright {
 
@@ -364,25 +365,6 @@ void add_mesher_json(const MesherReport& m, nlohmann::json& dense) {
                                     {"place", place_json(g.place)}});
 }
 
-nlohmann::json seconds_json(const PrepareReport& run) {
-  nlohmann::json seconds = {
-      {"read", run.seconds_read}, {"write", run.seconds_write}, {"total", run.seconds_total}};
-  if (run.mesher) {
-    seconds["mesh"] = run.seconds_mesh;
-    seconds["sdf"] = run.mesher->seconds_sdf;
-    seconds["octree"] = run.mesher->seconds_octree;
-    seconds["lattice"] = run.mesher->seconds_lattice;
-    seconds["move"] = run.mesher->seconds_move;
-    seconds["cut"] = run.mesher->seconds_cut;
-  }
-  if (run.simplify) {
-    seconds["build"] = run.simplify->seconds_build;
-    seconds["simplify"] = run.simplify->seconds_simplify;
-    seconds["close"] = run.simplify->seconds_close;
-  }
-  return seconds;
-}
-
 /// Diagnostics of the report, and the error if there is no result.
 std::vector<Diagnostic> diagnostics_of(const CommandRun& ended) {
   std::vector<Diagnostic> all = ended.report.diagnostics;
@@ -448,6 +430,7 @@ std::string stats_json(const CommandRun& ended) {
   if (run.simplify)
     for (const IterationReport& it : run.simplify->iterations) j["iterations"].push_back(iteration_json(it));
   j["seconds"] = seconds_json(run);
+  j["loops"] = loops_json(run);
   j["peak_bytes"] = peak_bytes();
   j["shortfall"] = shortfall_json(run.diagnostics);
   j["diagnostics"] = diagnostics_json(diagnostics_of(ended));

@@ -5,14 +5,15 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "common/io/encodings/byte_order.h"
-#include "common/io/encodings/vtu_data.h"
 #include "common/utf8.h"
+#include "tetwright/files.h"
 
 namespace tetwright {
 
@@ -24,6 +25,14 @@ inline std::string vtu_head(const std::string& dataset) {
          "compressor=\"vtkZLibDataCompressor\">\n<" +
          dataset + ">\n";
 }
+
+/// Writes an array of `size` bytes as VTK encodes it inline for format="binary", header_type="UInt32" and
+/// compressor="vtkZLibDataCompressor". Blocks are compressed by zlib in parallel; the bytes written do not
+/// depend on the number of threads. Needs memory for the compressed array, and 64 blocks of 2^18 bytes.
+/// \param fill `fill(begin, bytes)` fills `bytes` with the bytes of the array from offset `begin` on, a
+///   multiple of 2^18; called concurrently
+void write_vtu_array(std::size_t size, const std::function<void(std::size_t begin, std::span<char>)>& fill,
+                     const ByteSink& sink);
 
 /// Writes a data array of `size` numbers `number(i)`.
 template <class NumberAt>

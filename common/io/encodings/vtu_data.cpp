@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/encodings/vtu_data.h"
 
-#include <zlib.h>
-
+#include <atomic>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <memory>
 #include <new>
+#include <numeric>
 #include <type_traits>
 
 #include "common/io/encodings/base64.h"
@@ -15,6 +15,7 @@
 #include "common/io/encodings/vtu_blocks.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/text/text_scanner.h"
+#include "common/parallel/touched_memory.h"
 #include "tetwright/error.h"
 #include "tetwright/resources.h"
 
@@ -24,6 +25,8 @@ namespace {
 
 /// Number of bytes of an uncompressed array that are decoded at a time.
 constexpr std::size_t piece_bytes = std::size_t{1} << 20;
+constexpr std::size_t point_grain =
+    1 << 14;  ///< points for each task of a parallel loop: some nanoseconds each
 constexpr std::int64_t max_vtu_components = 1 << 16;
 
 /// Has the interface of Base64Reader, but for bytes that are not encoded.
@@ -37,10 +40,23 @@ class RawReader {
     return n;
   }
   std::size_t max_left() const { return bytes_.size(); }
+  std::string_view rest() const { return bytes_; }
 
  private:
   std::string_view bytes_;
 };
+
+/// Bytes from `begin` on of the rest of a reader.
+/// \return false if they are damaged
+bool decode_range(const RawReader& source, std::size_t begin, std::span<char> to) {
+  const std::string_view bytes = source.rest();
+  if (begin > bytes.size() || to.size() > bytes.size() - begin) return false;
+  std::copy_n(bytes.data() + begin, to.size(), to.data());
+  return true;
+}
+bool decode_range(const Base64Reader& source, std::size_t begin, std::span<char> to) {
+  return decode_base64(source.rest(), begin, to);
+}
 
 std::string cut_short() {
   return "the data of an array ends too early or is not base64; the file is truncated";
@@ -131,13 +147,17 @@ std::vector<Vec3> VtuData::points(pugi::xml_node piece, std::size_t n) const {
   if (!node) fail(piece, "there are no Points in it");
   const std::vector<double> numbers = this->numbers(node, 3 * n);
   expect_size(node, numbers.size(), 3 * n);
-  std::vector<Vec3> points(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    points[i] = Vec3(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]);
-    if (!points[i].allFinite())
-      fail(node, "a coordinate of point " + std::to_string(i) +
-                     " (counted from 0) is not finite; remove or repair it");
-  }
+  std::vector<Vec3> points;
+  reserve_touched(points, n);
+  points.resize(n);
+  parallel_for(0, n, point_grain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      points[i] = Vec3(numbers[3 * i], numbers[3 * i + 1], numbers[3 * i + 2]);
+  });
+  const auto bad = std::find_if(points.begin(), points.end(), [](const Vec3& p) { return !p.allFinite(); });
+  if (bad != points.end())
+    fail(node, "a coordinate of point " + std::to_string(bad - points.begin()) +
+                   " (counted from 0) is not finite; remove or repair it");
   return points;
 }
 
@@ -182,6 +202,41 @@ void VtuData::fail(pugi::xml_node node, const std::string& message) const {
   const std::string_view array = node.attribute("Name").as_string();
   fail("byte " + std::to_string(std::max<std::ptrdiff_t>(0, node.offset_debug())) + ": " + node.name() +
        (array.empty() ? "" : " " + in_quotes(array)) + ": " + message);
+}
+
+/// Decodes the blocks of a compressed array in parallel.
+/// \return false if that is impossible, since the encoding has gaps or something is damaged: decode the array
+///   again from its beginning, block by block, which may succeed or finds the first error
+template <class Source>
+bool VtuData::decode_blocks(const Source& source, const Blocks& blocks, const DecodedBytes& out) const {
+  std::vector<std::uint64_t> begins(blocks.packed_sizes.size());
+  std::exclusive_scan(blocks.packed_sizes.begin(), blocks.packed_sizes.end(), begins.begin(),
+                      std::uint64_t{0});
+  struct Worker {
+    std::unique_ptr<BlockUnpacker> unpacker;
+    std::vector<char> packed, decoded;
+  };
+  std::vector<Worker> workers(thread_count());
+  std::atomic<bool> damaged{false};  // relaxed: it only has to become visible eventually
+  const auto decode_block = [&](std::size_t b, unsigned worker) {
+    if (damaged.load(std::memory_order_relaxed)) return;
+    auto& [unpacker, packed, decoded] = workers[worker];
+    if (!unpacker) unpacker = make_block_unpacker(compressor_);
+    const std::uint64_t begin = b * blocks.size_of_each;
+    packed.resize(static_cast<std::size_t>(blocks.packed_sizes[b]));
+    decoded.resize(static_cast<std::size_t>(std::min(blocks.size_of_each, blocks.size - begin)));
+    if (decode_range(source, static_cast<std::size_t>(begins[b]), packed) &&
+        unpacker->unpack({packed.data(), packed.size()}, decoded))
+      out.block(static_cast<std::size_t>(begin), {decoded.data(), decoded.size()});
+    else
+      damaged.store(true, std::memory_order_relaxed);
+  };
+  try {
+    parallel_chunks(begins.size(), decode_block);
+  } catch (const InputError&) {
+    return false;
+  }
+  return !damaged.load();
 }
 
 template <class Source>
@@ -234,6 +289,8 @@ void VtuData::decode_from(Source source, pugi::xml_node array, std::size_t max_b
   const std::uint64_t size = last > 0 ? (blocks - 1) * block_size + last : blocks * block_size;
   check_size(size, possible);
   out.begin(static_cast<std::size_t>(size));
+  if (out.block && block_size % out.unit == 0 && decode_blocks(source, {packed_sizes, block_size, size}, out))
+    return;
   std::string packed;
   for (std::size_t b = 0; b < blocks; ++b) {
     if (packed_sizes[b] > source.max_left()) fail(array, cut_short());
@@ -300,25 +357,37 @@ std::vector<Value> VtuData::values(pugi::xml_node array, std::size_t max_count) 
     return out;
   }
   const auto convert = [&]<class Stored>(Stored) {
+    std::size_t filled = 0;
     std::string rest;  // part of a number that continues in the next piece
+    const auto add = [&](const char* stored) {
+      out[filled] = checked<Value>(load<Stored>(stored, swap_), array, filled);
+      ++filled;
+    };
     decode(array, max_count > SIZE_MAX / 8 ? SIZE_MAX : max_count * sizeof(Stored),
            {[&](std::size_t size) {
               if (size % sizeof(Stored) != 0)
                 fail(array, "its size is not a multiple of the size of its numbers");
-              out.reserve(size / sizeof(Stored));
+              reserve_touched(out, size / sizeof(Stored));
+              out.resize(size / sizeof(Stored));
             },
             [&](std::string_view bytes) {
               while (!rest.empty() && !bytes.empty()) {
                 rest += bytes.front();
                 bytes.remove_prefix(1);
                 if (rest.size() < sizeof(Stored)) continue;
-                out.push_back(checked<Value>(load<Stored>(rest.data(), swap_), array, out.size()));
+                add(rest.data());
                 rest.clear();
               }
-              for (; bytes.size() >= sizeof(Stored); bytes.remove_prefix(sizeof(Stored)))
-                out.push_back(checked<Value>(load<Stored>(bytes.data(), swap_), array, out.size()));
+              for (; bytes.size() >= sizeof(Stored); bytes.remove_prefix(sizeof(Stored))) add(bytes.data());
               if (rest.empty()) rest = bytes;
-            }});
+            },
+            [&](std::size_t begin, std::string_view bytes) {
+              for (std::size_t at = 0; at < bytes.size(); at += sizeof(Stored)) {
+                const std::size_t i = (begin + at) / sizeof(Stored);
+                out[i] = checked<Value>(load<Stored>(bytes.data() + at, swap_), array, i);
+              }
+            },
+            sizeof(Stored)});
   };
   const std::string_view type = array.attribute("type").as_string();
   if (type == "Float64")
@@ -387,61 +456,10 @@ void VtuData::texts(pugi::xml_node array, std::size_t count,
     }
   } else {
     decode(array, count > SIZE_MAX / (max_vtu_text + 1) ? SIZE_MAX : count * (max_vtu_text + 1),
-           {[](std::size_t) {}, add});
+           {[](std::size_t) {}, add, nullptr, 1});
   }
   if (!text.empty()) fail(array, "its last string does not end with a zero; the file is truncated");
   expect_size(array, taken, count);
-}
-
-void write_vtu_array(std::size_t size, const std::function<void(std::size_t begin, std::span<char>)>& fill,
-                     const ByteSink& sink) {
-  constexpr std::size_t block_size = std::size_t{1} << 18;
-  // Much faster than zlib's default level of 6; the output is a few percent larger.
-  constexpr int level = 4;
-  const std::size_t blocks = (size + block_size - 1) / block_size;
-  std::vector<std::string> packed(blocks);
-  struct Buffers {
-    std::vector<char> raw, packed;
-  };
-  std::vector<Buffers> buffers(thread_count());
-  parallel_chunks(blocks, [&](std::size_t b, unsigned worker) {
-    auto& [raw, out] = buffers[worker];
-    raw.resize(std::min(block_size, size - b * block_size));
-    fill(b * block_size, raw);
-    uLongf packed_size = compressBound(raw.size());
-    out.resize(packed_size);
-    TETWRIGHT_CHECK(compress2(reinterpret_cast<Bytef*>(out.data()), &packed_size,
-                              reinterpret_cast<const Bytef*>(raw.data()), raw.size(), level) == Z_OK);
-    packed[b].assign(out.data(), packed_size);
-  });
-  std::string header;
-  const auto append_size = [&](std::size_t n) {
-    auto raw = std::bit_cast<std::array<char, 4>>(static_cast<std::uint32_t>(n));
-    if (!little_endian_machine) std::reverse(raw.begin(), raw.end());
-    header.append(raw.data(), raw.size());
-  };
-  append_size(blocks);
-  if (blocks > 0) {
-    append_size(block_size);
-    append_size(size % block_size);  // 0: the last block is full
-    for (const std::string& p : packed) append_size(p.size());
-  }
-  std::string text;
-  append_base64(text, header);
-  // The blocks are encoded as one stream, since three bytes that become four characters may lie in two
-  // blocks.
-  std::string data;
-  for (std::string& p : packed) {
-    data += p;
-    std::string().swap(p);
-    const std::size_t whole = data.size() / 3 * 3;
-    append_base64(text, std::string_view(data).substr(0, whole));
-    data.erase(0, whole);
-    sink(text);
-    text.clear();
-  }
-  append_base64(text, data);
-  sink(text);
 }
 
 }  // namespace tetwright

@@ -4,12 +4,10 @@
 #include <cstdint>
 #include <functional>
 #include <pugixml.hpp>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "tetwright/files.h"
 #include "tetwright/io.h"
 #include "tetwright/tet_mesh.h"
 
@@ -80,12 +78,24 @@ class VtuData {
   struct DecodedBytes {
     std::function<void(std::size_t size)> begin;
     std::function<void(std::string_view bytes)> piece;
+    /// Receives the bytes from offset `begin` on, a multiple of `unit`. Called concurrently in any order; the
+    /// pieces may follow if blocks turn out to be damaged. Null: only pieces.
+    std::function<void(std::size_t begin, std::string_view bytes)> block;
+    std::size_t unit;
+  };
+  /// Sizes of the blocks of a compressed array, in bytes.
+  struct Blocks {
+    const std::vector<std::uint64_t>& packed_sizes;
+    std::uint64_t size_of_each;  ///< uncompressed; the last may be smaller
+    std::uint64_t size;          ///< of the whole array
   };
   template <class Value, class Stored>
   Value checked(Stored stored, pugi::xml_node array, std::size_t place) const;
   template <class Value>
   std::vector<Value> values(pugi::xml_node array, std::size_t max_count) const;
   void decode(pugi::xml_node array, std::size_t max_bytes, const DecodedBytes& out) const;
+  template <class Source>
+  bool decode_blocks(const Source& source, const Blocks& blocks, const DecodedBytes& out) const;
   template <class Source>
   void decode_from(Source source, pugi::xml_node array, std::size_t max_bytes, const DecodedBytes& out) const;
 
@@ -99,13 +109,5 @@ class VtuData {
   bool wide_header_ = false;  ///< true: sizes are UInt64
   std::string compressor_;    ///< empty: uncompressed
 };
-
-/// Writes an array of `size` bytes as VTK encodes it inline for format="binary", header_type="UInt32" and
-/// compressor="vtkZLibDataCompressor". Blocks are compressed by zlib in parallel; the bytes written do not
-/// depend on the number of threads. Needs memory for the compressed array and one block for each thread.
-/// \param fill `fill(begin, bytes)` fills `bytes` with the bytes of the array from offset `begin` on, a
-///   multiple of 2^18; called concurrently
-void write_vtu_array(std::size_t size, const std::function<void(std::size_t begin, std::span<char>)>& fill,
-                     const ByteSink& sink);
 
 }  // namespace tetwright

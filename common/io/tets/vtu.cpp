@@ -3,25 +3,22 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <map>
+#include <atomic>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "common/io/elements/midside_nodes_read.h"
 #include "common/io/elements/vtk_cells.h"
-#include "common/io/encodings/vtu_arrays.h"
 #include "common/io/encodings/vtu_data.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/names/mesh_parts.h"
 #include "common/io/text/text_scanner.h"
-#include "common/io/text/xml_text.h"
-#include "common/mesh/boundary_groups.h"
-#include "common/unique_names.h"
+#include "common/parallel/touched_memory.h"
 #include "tetwright/error.h"
-#include "tetwright/sheets.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 
@@ -55,6 +52,7 @@ class VtuReader {
 
  private:
   static constexpr std::size_t midside_per_tet = 6, midside_per_triangle = 3;
+  static constexpr std::size_t cell_grain = 1 << 14;  ///< cells for each task: some nanoseconds each
   /// VTK's array that marks points and cells that another piece also has.
   static constexpr const char* ghost_marks = "vtkGhostType";
 
@@ -66,15 +64,18 @@ class VtuReader {
     if (mesh.points.size() + points >= no_index)
       data_.fail(piece, "more than " + std::to_string(no_index - 1) + " points; split the mesh");
     first_points_.push_back(static_cast<Index>(mesh.points.size()));
-    const std::vector<Vec3> of_piece = data_.points(piece, points);
-    mesh.points.insert(mesh.points.end(), of_piece.begin(), of_piece.end());
-    const std::vector<std::size_t> tet_to_cell = read_cells(piece, points, cells);
+    std::vector<Vec3> of_piece = data_.points(piece, points);
+    if (mesh.points.empty())
+      mesh.points = std::move(of_piece);
+    else
+      mesh.points.insert(mesh.points.end(), of_piece.begin(), of_piece.end());
+    const std::optional<std::vector<std::size_t>> tet_to_cell = read_cells(piece, points, cells);
     cells_ += cells;
     const bool has_surfaces = take_surfaces(piece, cells);
     add_fields(mesh.point_fields, data_.fields(piece.child("PointData"), points, nullptr, &rounded_),
                first_points_.back(), points);
-    std::vector<MeshField> cell_fields = data_.fields(
-        piece.child("CellData"), cells, tet_to_cell.size() < cells ? &tet_to_cell : nullptr, &rounded_);
+    std::vector<MeshField> cell_fields =
+        data_.fields(piece.child("CellData"), cells, tet_to_cell ? &*tet_to_cell : nullptr, &rounded_);
     if (has_surfaces)
       std::erase_if(cell_fields, [](const MeshField& field) { return field.name == vtk_surface_field; });
     add_fields(mesh.cell_fields, std::move(cell_fields), first_tet, mesh.tets.size() - first_tet);
@@ -138,9 +139,36 @@ class VtuReader {
     return node ? data_.integers(node, cells) : std::vector<std::int64_t>();
   }
 
+  /// Takes the cells if all are tets of four points within the piece, each listed once.
+  /// \return false if they are not: nothing was taken
+  bool take_plain_tets(const std::vector<std::uint32_t>& types, const std::vector<std::uint32_t>& offsets,
+                       const std::vector<std::uint32_t>& connectivity, std::size_t points) {
+    if (connectivity.size() != 4 * types.size()) return false;
+    std::vector<Tet>& tets = result_.mesh.tets;
+    const std::size_t before = tets.size();
+    const Index first_point = first_points_.back();
+    if (before == 0) reserve_touched(tets, types.size());
+    tets.resize(before + types.size());
+    std::atomic<bool> plain{true};  // relaxed: it only has to become visible eventually
+    parallel_for(0, types.size(), cell_grain, [&](std::size_t begin, std::size_t end) {
+      bool all = true;
+      for (std::size_t c = begin; c < end; ++c) {
+        all &= types[c] == element::tet.vtk && offsets[c] == 4 * (c + 1);
+        for (std::size_t k = 0; k < 4; ++k) {
+          all &= connectivity[4 * c + k] < points;
+          tets[before + c][k] = first_point + connectivity[4 * c + k];
+        }
+      }
+      if (!all) plain.store(false, std::memory_order_relaxed);
+    });
+    if (!plain.load()) tets.resize(before);
+    return plain.load();
+  }
+
   /// Reads the cells.
-  /// \return the cell indices of the tets
-  std::vector<std::size_t> read_cells(pugi::xml_node piece, std::size_t points, std::size_t cell_count) {
+  /// \return the cell indices of the tets; nothing if all cells are tets
+  std::optional<std::vector<std::size_t>> read_cells(pugi::xml_node piece, std::size_t points,
+                                                     std::size_t cell_count) {
     constexpr std::int64_t duplicate_cell = 1;
     const pugi::xml_node cells = piece.child("Cells");
     if (!cells) data_.fail(piece, "there are no Cells in it");
@@ -154,6 +182,7 @@ class VtuReader {
     const std::vector<std::uint32_t> connectivity =
         data_.counts(connectivity_node, offsets.empty() ? 0 : offsets.back());
     const std::vector<std::int64_t> ghost = ghosts(piece, cell_count);
+    if (ghost.empty() && take_plain_tets(types, offsets, connectivity, points)) return std::nullopt;
     const Index first_point = first_points_.back();
     std::vector<std::size_t> tet_to_cell;
     const bool has_surfaces = static_cast<bool>(
@@ -197,6 +226,7 @@ class VtuReader {
       begin = end;
     }
     if (other_cells_.has_volumes()) data_.fail(types_node, other_cells_.refusal());
+    if (tet_to_cell.size() == cell_count) return std::nullopt;
     return tet_to_cell;
   }
 
@@ -332,142 +362,10 @@ class VtuReader {
   ReadTetMesh result_;
 };
 
-void write_field(const ByteSink& sink, const MeshField& field, const std::string& name) {
-  const auto write = [&]<class Number>(Number, const char* type) {
-    write_vtu_numbers(sink, type, xml_text(name),
-                      "NumberOfComponents=\"" + std::to_string(field.components) + "\" ", field.values.size(),
-                      [&](std::size_t i) { return static_cast<Number>(field.values[i]); });
-  };
-  const auto narrow = [](double value) { return value >= INT32_MIN && value <= INT32_MAX; };
-  if (!field.integer || !all_whole(field))
-    write(double{}, "Float64");
-  else if (std::all_of(field.values.begin(), field.values.end(), narrow))
-    write(std::int32_t{}, "Int32");
-  else
-    write(std::int64_t{}, "Int64");
-}
-
-/// The sheets of the mesh, without tets.
-TetMesh only_sheets(const TetMesh& mesh) {
-  TetMesh sheets;
-  sheets.interfaces = sheets_of(mesh);
-  for (const InterfaceTriangle& t : sheets.interfaces)
-    if (sheets.materials.empty() || sheets.materials.back() != t.material)
-      sheets.materials.push_back(t.material);
-  sheets.material_names = mesh.material_names;
-  sheets.patch_groups = mesh.patch_groups;
-  return sheets;
-}
-
-/// The faces of sheets, which are written as cells after the tets.
-struct SheetCells {
-  explicit SheetCells(const TetMesh& mesh) {
-    for (std::size_t i = 0; i < mesh.interfaces.size(); ++i)
-      if (mesh.interfaces[i].is_sheet()) faces.push_back(i);
-    if (faces.empty()) return;
-    const BoundaryGroups groups(only_sheets(mesh));
-    for (const std::size_t face : faces) numbers.push_back(groups.number_of(mesh.interfaces[face]));
-  }
-  std::vector<std::size_t> faces;     ///< indices into TetMesh::interfaces
-  std::vector<std::int64_t> numbers;  ///< of their surfaces
-};
-
 }  // namespace
 
 ReadTetMesh read_vtu(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options) {
   return VtuReader(bytes, name, options).read();
-}
-
-std::string write_vtu(const MeshToWrite& written) {
-  std::string out;
-  write_vtu(written, [&](std::string_view bytes) { out += bytes; });
-  return out;
-}
-
-MeshParts vtu_parts(const TetMesh& mesh) {
-  MeshParts parts;
-  parts.surfaces = names_of_parts(only_sheets(mesh), printable_names()).surfaces;
-  UniqueNames names(printable_name);
-  std::map<std::string, std::string> written;  // names stay equal if they are equal in the mesh
-  for (const auto& [tag, name] : mesh.material_names) {
-    const auto [known, added] = written.try_emplace(name);
-    if (added) known->second = names.add(name);
-    parts.materials.push_back({tag, tag, known->second, {}});
-  }
-  return parts;
-}
-
-void write_vtu(const MeshToWrite& written, const ByteSink& sink) {
-  const TetMesh& mesh = written.mesh;
-  const MidsideNodes* midside = written.midside;
-  sink(vtu_head("UnstructuredGrid"));
-  const SheetCells sheets(mesh);
-  if (!mesh.material_names.empty() || !sheets.faces.empty()) {
-    const MeshParts parts = vtu_parts(mesh);
-    std::vector<std::pair<std::int64_t, std::string>> names;
-    sink("<FieldData>\n");
-    for (const MeshParts::Material& m : parts.materials) names.emplace_back(m.tag, m.name);
-    if (!names.empty()) write_vtu_names(sink, vtk_material_names, names);
-    names.clear();
-    for (const MeshParts::Surface& s : parts.surfaces) names.emplace_back(s.number, s.name);
-    if (!names.empty()) write_vtu_names(sink, vtk_surface_names, names);
-    sink("</FieldData>\n");
-  }
-  const std::size_t tets = mesh.tets.size(), cells = tets + sheets.faces.size();
-  sink("<Piece NumberOfPoints=\"" + std::to_string(written.nodes()) + "\" NumberOfCells=\"" +
-       std::to_string(cells) + "\">\n<Points>\n");
-  write_vtu_numbers(sink, "Float64", "Points", "NumberOfComponents=\"3\" ", 3 * written.nodes(),
-                    [&](std::size_t i) { return written.node(i / 3)[static_cast<Eigen::Index>(i % 3)]; });
-  sink("</Points>\n<Cells>\n");
-  const std::size_t of_tet = midside ? 10 : 4, of_triangle = midside ? 6 : 3;
-  const auto midside_node = [&](Index m) { return static_cast<std::int64_t>(mesh.points.size() + m); };
-  write_vtu_numbers(sink, "Int64", "connectivity", "", of_tet * tets + of_triangle * sheets.faces.size(),
-                    [&](std::size_t i) {
-                      if (i < of_tet * tets) {
-                        const std::size_t t = i / of_tet, k = i % of_tet;
-                        return k < 4 ? std::int64_t{mesh.tets[t][k]}
-                                     : midside_node(midside->of_tets[t][k - 4]);
-                      }
-                      const std::size_t face = sheets.faces[(i - of_tet * tets) / of_triangle],
-                                        k = (i - of_tet * tets) % of_triangle;
-                      return k < 3 ? std::int64_t{mesh.interfaces[face].ids[k]}
-                                   : midside_node(midside->of_faces[face][k - 3]);
-                    });
-  write_vtu_numbers(sink, "Int64", "offsets", "", cells, [&](std::size_t i) {
-    return static_cast<std::int64_t>(i < tets ? of_tet * (i + 1)
-                                              : of_tet * tets + of_triangle * (i + 1 - tets));
-  });
-  write_vtu_numbers(sink, "UInt8", "types", "", cells, [&](std::size_t i) {
-    return static_cast<std::uint8_t>(i < tets
-                                         ? (midside ? element::quadratic_tet : element::tet).vtk
-                                         : (midside ? element::quadratic_triangle : element::triangle).vtk);
-  });
-  sink("</Cells>\n");
-  if (!mesh.point_fields.empty()) {
-    sink("<PointData>\n");
-    const std::vector<MeshField> fields = written.node_fields();
-    const std::vector<std::string> names = field_names_to_write(fields, {});
-    for (std::size_t f = 0; f < names.size(); ++f) write_field(sink, fields[f], names[f]);
-    sink("</PointData>\n");
-  }
-  sink("<CellData Scalars=\"material\">\n");
-  write_vtu_numbers(sink, "Int32", "material", "", cells, [&](std::size_t i) {
-    return std::int32_t{i < tets ? mesh.materials[i] : mesh.interfaces[sheets.faces[i - tets]].material};
-  });
-  std::vector<std::string> taken{"material"};
-  if (!sheets.faces.empty()) {
-    taken.emplace_back(vtk_surface_field);
-    write_vtu_numbers(sink, "Int32", vtk_surface_field, "", cells, [&](std::size_t i) {
-      return static_cast<std::int32_t>(i < tets ? 0 : sheets.numbers[i - tets]);
-    });
-  }
-  const std::vector<std::string> names = field_names_to_write(mesh.cell_fields, taken);
-  for (std::size_t f = 0; f < names.size(); ++f)
-    if (sheets.faces.empty())
-      write_field(sink, mesh.cell_fields[f], names[f]);
-    else
-      write_field(sink, with_triangles(mesh.cell_fields[f], sheets.faces.size()), names[f]);
-  sink("</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
 }
 
 }  // namespace tetwright

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "tetwright/loop_times.h"
 #include "tetwright/mesh_quality.h"
 #include "tetwright/mesher_input.h"
 #include "tetwright/progress.h"
@@ -150,6 +151,8 @@ struct MesherReport {
   MesherEstimate estimate;              ///< from the input, see estimate_mesh()
   MesherEstimate lattice_estimate;      ///< from the regions of the lattice points
   double seconds_sdf = 0, seconds_octree = 0, seconds_lattice = 0, seconds_move = 0, seconds_cut = 0;
+  /// Loops of these stages, if the thread counts them.
+  LoopTimes loops_sdf, loops_octree, loops_lattice, loops_move, loops_cut;
 };
 
 /// The faces of a mesh that close holes of the surfaces.

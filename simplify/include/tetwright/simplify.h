@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tetwright/loop_times.h"
 #include "tetwright/mesh_quality.h"
 #include "tetwright/progress.h"
 #include "tetwright/sizes.h"
@@ -172,6 +173,7 @@ struct SimplifyReport {
   std::optional<DeviationReport> deviation;      ///< with a tolerance
   bool out_of_time = false;                      ///< the deadline of the Progress ended the call early
   double seconds_build = 0, seconds_simplify = 0, seconds_close = 0;
+  LoopTimes loops_build, loops_simplify, loops_close;  ///< loops of these stages, if the thread counts them
 };
 
 /// Simplifies a valid mesh to about `target_tets` (within 1 % if topology and shapes allow) and improves its

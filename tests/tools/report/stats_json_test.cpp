@@ -57,6 +57,12 @@ TEST(StatsJson, FollowsItsSchema) {
   EXPECT_EQ(j["threads"], 2);
   EXPECT_EQ(j["result"]["materials"][0]["name"], "t");
   EXPECT_GT(j["peak_bytes"], 0);
+  EXPECT_EQ(j["loops"].size(), j["seconds"].size());
+  for (const nlohmann::json& stage : j["loops"]) {
+    EXPECT_TRUE(j["seconds"].contains(stage["stage"]));
+    EXPECT_LE(stage["seconds"], stage["thread_seconds"]) << stage["stage"];
+  }
+  EXPECT_GT(j["loops"].back()["count"], 0);
   EXPECT_FALSE(j["iterations"].empty());
   const auto bounded = stats("prepare " + (f / "t.ply") + " -o " + (f / "p.vtu") +
                              " --tolerance 2% --max-edge 20% --target-tets 2000");

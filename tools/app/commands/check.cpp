@@ -142,6 +142,7 @@ CheckReport make_check(CommandRun& run) {
   run.progress.begin_stage("check");
   run.report.input_points = mesh.points.size();
   run.report.seconds_read = run.since_start.seconds();
+  run.report.loops_read = run.since_start.loops();
   CheckReport check = examine(mesh, run);
   if (!line.check.before.empty()) check.topology_differences.emplace();
   if (check.measurable) {
@@ -164,6 +165,7 @@ CheckReport make_check(CommandRun& run) {
   if (!(check.valid() && check.topology_kept() && check.within_tolerance()))
     run.status = ExitStatus::short_of_request;
   run.report.seconds_total = run.since_start.seconds();
+  run.report.loops_total = run.since_start.loops();
   OutputFiles files(&run.progress);
   if (check.measurable) write_report(mesh, run, files, &check);
   write_stats(run, files);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "tetwright/files.h"
+#include "tetwright/loop_times.h"
 #include "tetwright/prepare.h"
 #include "tetwright/prepare_steps.h"
 #include "tetwright/progress.h"
@@ -19,7 +20,7 @@ namespace tetwright {
 
 /// State and outcome of a command.
 struct CommandRun {
-  /// Sets the limit of --memory-limit, which applies to the constructing thread until destruction.
+  /// Sets the limit of --memory-limit and counts loops, both on the constructing thread until destruction.
   ///
   /// \param in_memory may be null; inputs are moved out of it when they are read
   /// \pre All arguments outlive the run.
@@ -27,6 +28,7 @@ struct CommandRun {
 
   const CommandLine& line;
   MemoryLimit memory_limit;
+  CountLoops counted_loops;
   Stopwatch since_start;
   Progress& progress;
   NamedInputs* in_memory;

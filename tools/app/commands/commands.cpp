@@ -70,6 +70,7 @@ void report_failure(const std::exception& error, CommandRun& run) {
   run.error = error.what();
   run.stage = run.progress.stage();
   run.report.seconds_total = run.since_start.seconds();
+  run.report.loops_total = run.since_start.loops();
   try {
     OutputFiles files;
     write_stats(run, files);

@@ -43,7 +43,9 @@ void write_result(Prepared& result, CommandRun& run) {
     write_interfaces(result.mesh, line.outputs.boundary, &files, line.outputs.boundary_format);
   write_report(result.mesh, run, files);
   run.report.seconds_write = watch.seconds();
+  run.report.loops_write = watch.loops();
   run.report.seconds_total = run.since_start.seconds();
+  run.report.loops_total = run.since_start.loops();
   write_stats(run, files);
   files.commit();
   run.progress.finish();

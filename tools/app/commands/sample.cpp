@@ -39,6 +39,7 @@ void run_sample(CommandRun& run) {
   OutputFiles files;
   std::visit([&](const auto& made) { write(made, line, files); }, sample);
   run.report.seconds_total = run.since_start.seconds();
+  run.report.loops_total = run.since_start.loops();
   write_stats(run, files);
   files.commit();
   if (line.outputs.stats == "-") std::printf("%s\n", stats_json(run).c_str());

@@ -5,7 +5,7 @@
 #include <cstring>
 
 #include "common/io/encodings/base64.h"
-#include "common/io/encodings/vtu_data.h"
+#include "common/io/encodings/vtu_arrays.h"
 #include "tests/common/io/expect_error.h"
 
 namespace tetwright::vtp_test {

@@ -13,6 +13,7 @@
 #include "tests/common/io/expect_error.h"
 #include "tests/common/io/same_values.h"
 #include "tests/common/io/tricky_meshes.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::vtu_test {
 namespace {
@@ -168,17 +169,58 @@ TEST(Vtu, HasNoPlaceForInterfaceTriangles) {
   EXPECT_EQ(write_vtu(mesh), without);
 }
 
-TEST(Vtu, LargeEnoughForSeveralBlocks) {
+/// A mesh whose arrays have several blocks.
+TetMesh large_mesh() {
   TetMesh mesh;
   for (int i = 0; i < 40000; ++i) mesh.points.push_back(Vec3(i, 0.1 * i, 1.0 / (i + 1)));
   for (Index i = 0; i + 3 < 40000; ++i) {
     mesh.tets.push_back({i, i + 1, i + 2, i + 3});
     mesh.materials.push_back(static_cast<MaterialTag>(i % 5));
   }
-  const TetMesh back = read_vtu(write_vtu(mesh), "f").mesh;
+  return mesh;
+}
+
+void expect_large_mesh(const std::string& bytes) {
+  const TetMesh back = read_vtu(bytes, "f").mesh, mesh = large_mesh();
   EXPECT_TRUE(same_bits(back.points, mesh.points));
   EXPECT_EQ(back.tets, mesh.tets);
   EXPECT_EQ(back.materials, mesh.materials);
+}
+
+TEST(Vtu, LargeEnoughForSeveralBlocks) {
+  std::string first;
+  for (const unsigned threads : {1u, 3u}) {
+    const ThreadLimit limit(threads);
+    const std::string bytes = write_vtu(large_mesh());
+    if (first.empty()) first = bytes;
+    EXPECT_EQ(bytes, first);
+    expect_large_mesh(bytes);
+  }
+}
+
+TEST(Vtu, BlocksMayHaveLineBreaksAndDamageIsNamed) {
+  const std::string good = write_vtu(large_mesh());
+  const std::size_t cells = good.find("Name=\"connectivity\""), begin = good.find('\n', cells) + 1,
+                    end = good.find('\n', begin);
+  std::string broken = good;
+  for (std::size_t at = end; at > begin + 200; at -= 200) broken.insert(at - 100, "\n  ");
+  std::string damaged = good;
+  damaged.replace(begin + (end - begin) / 2, 8, "AAAAAAAA");
+  std::string first;
+  for (const unsigned threads : {1u, 3u}) {
+    const ThreadLimit limit(threads);
+    expect_large_mesh(broken);
+    const std::string error = error_of<InputError>([&] { (void)read_vtu(damaged, "f"); });
+    EXPECT_NE(error.find("is damaged"), std::string::npos) << error;
+    if (first.empty()) first = error;
+    EXPECT_EQ(error, first);
+  }
+}
+
+TEST(Vtu, ANumberOutOfRangeInALaterBlockIsNamed) {
+  TetMesh mesh = large_mesh();
+  mesh.tets[39990][2] = 50000;
+  expect_input_error(read_vtu, write_vtu(mesh), "cell 39990 refers to point 50000 of 40000");
 }
 
 TEST(Vtu, EveryEncoding) {

@@ -18,6 +18,7 @@
 #include "tetwright/diagnostic.h"
 #include "tetwright/io.h"
 #include "tetwright/label_volume.h"
+#include "tetwright/loop_times.h"
 #include "tetwright/mesh_quality.h"
 #include "tetwright/mesher.h"
 #include "tetwright/mesher_input.h"
@@ -340,6 +341,7 @@ struct PrepareReport {
   RequestedSizes sizes;
   std::optional<EdgeLengthReport> edge_lengths;  ///< if sizes are requested
   double seconds_read = 0, seconds_mesh = 0, seconds_write = 0, seconds_total = 0;
+  LoopTimes loops_read, loops_mesh, loops_write, loops_total;  ///< loops of these stages
 };
 
 /// A mesh with its report and the data from which it was made.

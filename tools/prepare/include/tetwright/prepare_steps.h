@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "tetwright/loop_times.h"
 #include "tetwright/mesh_quality.h"
 #include "tetwright/mesher.h"
 #include "tetwright/mesher_input.h"
@@ -20,14 +21,16 @@
 
 namespace tetwright {
 
+/// Measures the time since its construction, and the part of it in loops, if the thread counts them.
 class Stopwatch {
  public:
-  /// Seconds since construction.
+  LoopTimes loops() const { return loop_times() - loops_before_; }
   double seconds() const {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   }
 
  private:
+  LoopTimes loops_before_ = loop_times();
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "common/io/elements/element_types.h"
+#include "common/io/encodings/vtu_arrays.h"
+#include "common/io/names/mesh_fields.h"
+#include "common/io/names/mesh_parts.h"
+#include "common/io/tets/vtu.h"
+#include "common/io/text/xml_text.h"
+#include "common/mesh/boundary_groups.h"
+#include "common/unique_names.h"
+#include "tetwright/sheets.h"
+
+namespace tetwright {
+
+namespace {
+
+void write_field(const ByteSink& sink, const MeshField& field, const std::string& name) {
+  const auto write = [&]<class Number>(Number, const char* type) {
+    write_vtu_numbers(sink, type, xml_text(name),
+                      "NumberOfComponents=\"" + std::to_string(field.components) + "\" ", field.values.size(),
+                      [&](std::size_t i) { return static_cast<Number>(field.values[i]); });
+  };
+  const auto narrow = [](double value) { return value >= INT32_MIN && value <= INT32_MAX; };
+  if (!field.integer || !all_whole(field))
+    write(double{}, "Float64");
+  else if (std::all_of(field.values.begin(), field.values.end(), narrow))
+    write(std::int32_t{}, "Int32");
+  else
+    write(std::int64_t{}, "Int64");
+}
+
+/// The sheets of the mesh, without tets.
+TetMesh only_sheets(const TetMesh& mesh) {
+  TetMesh sheets;
+  sheets.interfaces = sheets_of(mesh);
+  for (const InterfaceTriangle& t : sheets.interfaces)
+    if (sheets.materials.empty() || sheets.materials.back() != t.material)
+      sheets.materials.push_back(t.material);
+  sheets.material_names = mesh.material_names;
+  sheets.patch_groups = mesh.patch_groups;
+  return sheets;
+}
+
+/// The faces of sheets, which are written as cells after the tets.
+struct SheetCells {
+  explicit SheetCells(const TetMesh& mesh) {
+    for (std::size_t i = 0; i < mesh.interfaces.size(); ++i)
+      if (mesh.interfaces[i].is_sheet()) faces.push_back(i);
+    if (faces.empty()) return;
+    const BoundaryGroups groups(only_sheets(mesh));
+    for (const std::size_t face : faces) numbers.push_back(groups.number_of(mesh.interfaces[face]));
+  }
+  std::vector<std::size_t> faces;     ///< indices into TetMesh::interfaces
+  std::vector<std::int64_t> numbers;  ///< of their surfaces
+};
+
+}  // namespace
+
+std::string write_vtu(const MeshToWrite& written) {
+  std::string out;
+  write_vtu(written, [&](std::string_view bytes) { out += bytes; });
+  return out;
+}
+
+MeshParts vtu_parts(const TetMesh& mesh) {
+  MeshParts parts;
+  parts.surfaces = names_of_parts(only_sheets(mesh), printable_names()).surfaces;
+  UniqueNames names(printable_name);
+  std::map<std::string, std::string> written;  // names stay equal if they are equal in the mesh
+  for (const auto& [tag, name] : mesh.material_names) {
+    const auto [known, added] = written.try_emplace(name);
+    if (added) known->second = names.add(name);
+    parts.materials.push_back({tag, tag, known->second, {}});
+  }
+  return parts;
+}
+
+void write_vtu(const MeshToWrite& written, const ByteSink& sink) {
+  const TetMesh& mesh = written.mesh;
+  const MidsideNodes* midside = written.midside;
+  sink(vtu_head("UnstructuredGrid"));
+  const SheetCells sheets(mesh);
+  if (!mesh.material_names.empty() || !sheets.faces.empty()) {
+    const MeshParts parts = vtu_parts(mesh);
+    std::vector<std::pair<std::int64_t, std::string>> names;
+    sink("<FieldData>\n");
+    for (const MeshParts::Material& m : parts.materials) names.emplace_back(m.tag, m.name);
+    if (!names.empty()) write_vtu_names(sink, vtk_material_names, names);
+    names.clear();
+    for (const MeshParts::Surface& s : parts.surfaces) names.emplace_back(s.number, s.name);
+    if (!names.empty()) write_vtu_names(sink, vtk_surface_names, names);
+    sink("</FieldData>\n");
+  }
+  const std::size_t tets = mesh.tets.size(), cells = tets + sheets.faces.size();
+  sink("<Piece NumberOfPoints=\"" + std::to_string(written.nodes()) + "\" NumberOfCells=\"" +
+       std::to_string(cells) + "\">\n<Points>\n");
+  write_vtu_numbers(sink, "Float64", "Points", "NumberOfComponents=\"3\" ", 3 * written.nodes(),
+                    [&](std::size_t i) { return written.node(i / 3)[static_cast<Eigen::Index>(i % 3)]; });
+  sink("</Points>\n<Cells>\n");
+  const std::size_t of_tet = midside ? 10 : 4, of_triangle = midside ? 6 : 3;
+  const auto midside_node = [&](Index m) { return static_cast<std::int64_t>(mesh.points.size() + m); };
+  write_vtu_numbers(sink, "Int64", "connectivity", "", of_tet * tets + of_triangle * sheets.faces.size(),
+                    [&](std::size_t i) {
+                      if (i < of_tet * tets) {
+                        const std::size_t t = i / of_tet, k = i % of_tet;
+                        return k < 4 ? std::int64_t{mesh.tets[t][k]}
+                                     : midside_node(midside->of_tets[t][k - 4]);
+                      }
+                      const std::size_t face = sheets.faces[(i - of_tet * tets) / of_triangle],
+                                        k = (i - of_tet * tets) % of_triangle;
+                      return k < 3 ? std::int64_t{mesh.interfaces[face].ids[k]}
+                                   : midside_node(midside->of_faces[face][k - 3]);
+                    });
+  write_vtu_numbers(sink, "Int64", "offsets", "", cells, [&](std::size_t i) {
+    return static_cast<std::int64_t>(i < tets ? of_tet * (i + 1)
+                                              : of_tet * tets + of_triangle * (i + 1 - tets));
+  });
+  write_vtu_numbers(sink, "UInt8", "types", "", cells, [&](std::size_t i) {
+    return static_cast<std::uint8_t>(i < tets
+                                         ? (midside ? element::quadratic_tet : element::tet).vtk
+                                         : (midside ? element::quadratic_triangle : element::triangle).vtk);
+  });
+  sink("</Cells>\n");
+  if (!mesh.point_fields.empty()) {
+    sink("<PointData>\n");
+    const std::vector<MeshField> fields = written.node_fields();
+    const std::vector<std::string> names = field_names_to_write(fields, {});
+    for (std::size_t f = 0; f < names.size(); ++f) write_field(sink, fields[f], names[f]);
+    sink("</PointData>\n");
+  }
+  sink("<CellData Scalars=\"material\">\n");
+  write_vtu_numbers(sink, "Int32", "material", "", cells, [&](std::size_t i) {
+    return std::int32_t{i < tets ? mesh.materials[i] : mesh.interfaces[sheets.faces[i - tets]].material};
+  });
+  std::vector<std::string> taken{"material"};
+  if (!sheets.faces.empty()) {
+    taken.emplace_back(vtk_surface_field);
+    write_vtu_numbers(sink, "Int32", vtk_surface_field, "", cells, [&](std::size_t i) {
+      return static_cast<std::int32_t>(i < tets ? 0 : sheets.numbers[i - tets]);
+    });
+  }
+  const std::vector<std::string> names = field_names_to_write(mesh.cell_fields, taken);
+  for (std::size_t f = 0; f < names.size(); ++f)
+    if (sheets.faces.empty())
+      write_field(sink, mesh.cell_fields[f], names[f]);
+    else
+      write_field(sink, with_triangles(mesh.cell_fields[f], sheets.faces.size()), names[f]);
+  sink("</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
+}
+
+}  // namespace tetwright
