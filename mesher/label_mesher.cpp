@@ -6,6 +6,7 @@
 #include "mesher/field_mesher.h"
 #include "mesher/labels/label_field.h"
 #include "mesher/labels/label_thickness.h"
+#include "mesher/lattice/redundant_cells.h"
 #include "mesher/mesh_estimate.h"
 #include "mesher/tuning/cell_tuning.h"
 #include "mesher/tuning/domain_tuning.h"
@@ -69,10 +70,12 @@ DenseMesh mesh_labels(const LabelInput& labels, const MesherOptions& options, Pr
   const GridFrame voxels = label_frame(labels, report.cell_size, options.uniform);
   ThinLabels thin;
   if (!options.uniform) thin = find_thin_labels(labels, voxels, progress);
-  report.estimate = estimate_mesh(labels, options, count_thin_cells(labels, voxels, thin.finer));
-  validate_estimate(report.estimate);
+  validate_estimate(estimate_mesh(labels, options, ThinCells()));
   const std::shared_ptr<const MaterialField> field =
       LabelField::make(labels, voxels, options.keep_outside, progress);
+  drop_redundant_cells(thin.finer, *field, thin.island_levels, progress);
+  report.estimate = estimate_mesh(labels, options, count_thin_cells(labels, voxels, thin.finer));
+  validate_estimate(report.estimate);
   for (const ThinPart& p : thin.too_thin)
     report.thin_parts.push_back({p.region == outside_region ? "" : field->regions()[p.region].name, p.places,
                                  voxels.to_input(p.first), true});

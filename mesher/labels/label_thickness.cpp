@@ -217,6 +217,9 @@ class ThinLabelFinder {
     return !voxels_.empty() && voxels_.size() <= LabelTuning::Thickness::max_island_voxels;
   }
 
+  /// Whether only islands are among the voxels found.
+  bool found_islands() const { return island_levels_ > 0; }
+
   /// The voxels found, as parts of their regions that even the smallest cells do not resolve.
   std::vector<ThinPart> too_thin() const {
     std::vector<ThinPart> parts;
@@ -298,6 +301,7 @@ ThinLabels find_thin_labels(const LabelInput& labels, const GridFrame& frame, co
       thin.too_thin = finder.too_thin();
     else
       by_depth.push_back(finder.cells_around(depth));
+    if (finder.found_islands()) ++thin.island_levels;
   }
   thin.finer.refinement = static_cast<int>(by_depth.size());
   thin.finer.cells.resize(by_depth.size() + 1);

@@ -13,6 +13,7 @@ namespace tetwright {
 /// Cells of a frame that must be split because a label, or the outside, is thinner than two of them.
 struct ThinLabels {
   RefinementRegions finer;
+  int island_levels = 0;  ///< number of levels of `finer`, from the finest one, that islands alone need
   /// Parts still thinner than two of the smallest cells. Counts are of voxels of the volume; positions are
   /// voxel centres in cells of the frame.
   std::vector<ThinPart> too_thin;

@@ -10,6 +10,7 @@ namespace tetwright {
 struct LatticeGrains {
   static constexpr std::size_t cells = 2048;           ///< of the octree, about a microsecond each
   static constexpr std::size_t sized_cells = 1024;     ///< each looks up max cell sizes
+  static constexpr std::size_t tested_cells = 512;     ///< each evaluates a field at some 15 points
   static constexpr std::size_t leaves = 1024;          ///< filled with tets, some microseconds each
   static constexpr std::size_t tets = 1 << 14;         ///< tets or points, some nanoseconds each
   static constexpr std::size_t sampled_points = 1024;  ///< whose distances are looked up

@@ -101,12 +101,15 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
     collapse_block(engine, limit, loop_target);
     const std::size_t collapsed = mesh.live_tets();
     const double removed = 1 - static_cast<double>(collapsed) / static_cast<double>(it.tets_before);
-    // If collapses stall, changes of connectivity and positions may allow more.
-    if (collapsed > loop_target && (static_cast<double>(collapsed) < TunedLoop::flips_below * target ||
-                                    (removed < TunedLoop::min_removed && percent >= 100)))
-      flip_and_smooth_block(engine, removed < TunedLoop::min_removed && percent >= 100
-                                        ? limit
-                                        : std::min(limit, quality_cutoff(mesh, TunedLoop::flip_percent)));
+    // If collapses stall near the target, or altogether, changes of connectivity and positions may allow more.
+    // Farther away larger bounds allow more in less time.
+    const bool stalled = removed < TunedLoop::min_removed && percent >= 100;
+    if (collapsed > loop_target &&
+        (static_cast<double>(collapsed) <
+             (stalled ? TunedLoop::stalled_flips_below : TunedLoop::flips_below) * target ||
+         (stalled && removed < TunedLoop::bounds_remove)))
+      flip_and_smooth_block(engine,
+                            stalled ? limit : std::min(limit, quality_cutoff(mesh, TunedLoop::flip_percent)));
     // If a body has lost much of its volume, fit its surface back to the middle of its samples; near the
     // target fit every surface.
     if (collapsed > loop_target && (engine.ledger().utilization() > TunedLoop::fit_above_utilization ||
