@@ -11,6 +11,7 @@
 #include <variant>
 
 #include "benchmarks/processes.h"
+#include "common/geometry/distance_tree.h"
 #include "common/geometry/surface_tree.h"
 #include "common/random.h"
 #include "common/samples/samples.h"
@@ -180,13 +181,13 @@ TETWRIGHT_CI(tree_winding, "surface_tree/winding_number");
 
 void tree_distance(benchmark::State& state) {
   const TriangleMesh surface = surface_of("sphere");
-  const SurfaceTree tree(surface.points, surface.triangles);
+  const DistanceTree tree(surface.points, surface.triangles);
   const std::vector<Vec3> places = places_near(surface, 0.05);
   repeatedly(state, [&] {
     for (const Vec3& p : places) benchmark::DoNotOptimize(tree.distance(p, 0.1));
   });
 }
-TETWRIGHT_CI(tree_distance, "surface_tree/distance");
+TETWRIGHT_CI(tree_distance, "distance_tree/distance");
 
 void check(benchmark::State& state) {
   const TetMesh& mesh = knot_mesh();

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "common/geometry/surface_tree.h"
+#include "common/geometry/distance_tree.h"
 #include "common/random.h"
 #include "tetwright/resources.h"
 
@@ -50,7 +50,7 @@ std::vector<Vec3> extreme_samples(const TriangleMesh& m) {
   return samples;
 }
 
-std::vector<double> distances(const std::vector<Vec3>& samples, const SurfaceTree& tree, double size) {
+std::vector<double> distances(const std::vector<Vec3>& samples, const DistanceTree& tree, double size) {
   std::vector<double> out(samples.size());
   parallel_for(0, samples.size(), 1024, [&](std::size_t begin, std::size_t end) {
     double reach = size / 1000;
@@ -66,7 +66,7 @@ std::vector<double> distances(const std::vector<Vec3>& samples, const SurfaceTre
   return out;
 }
 
-OneWayDistance one_way(const TriangleMesh& from, const SurfaceTree& to, double size, std::size_t count) {
+OneWayDistance one_way(const TriangleMesh& from, const DistanceTree& to, double size, std::size_t count) {
   OneWayDistance d;
   const std::vector<double> even = distances(area_samples(from, count), to, size);
   for (const double x : even) {
@@ -94,8 +94,8 @@ double diagonal(const TriangleMesh& surface) {
 SurfaceDistance surface_distance(const TriangleMesh& surface, const TriangleMesh& reference,
                                  std::size_t count) {
   const double size = diagonal(reference);
-  const SurfaceTree surface_tree(surface.points, surface.triangles);
-  const SurfaceTree reference_tree(reference.points, reference.triangles);
+  const DistanceTree surface_tree(surface.points, surface.triangles);
+  const DistanceTree reference_tree(reference.points, reference.triangles);
   return {one_way(surface, reference_tree, size, count), one_way(reference, surface_tree, size, count)};
 }
 
