@@ -63,8 +63,7 @@ std::optional<std::array<Index, 2>> narrow_edge(const MeshTriangle& f, const Mes
 
 }  // namespace
 
-SurfaceGrid::Box SurfaceGrid::box_of(const MeshTriangle& t) {
-  const Vec3 low = low_corner(t), high = high_corner(t);
+SurfaceGrid::Box SurfaceGrid::box_of(const Vec3& low, const Vec3& high) {
   Box box;
   constexpr float infinity = std::numeric_limits<float>::infinity();
   for (int k = 0; k < 3; ++k) {
@@ -191,9 +190,10 @@ void SurfaceGrid::reserve_twice() {
 }
 
 void SurfaceGrid::insert(std::uint32_t record) {
-  const CellRange range = range_of(records_[record]);
-  const int level = level_of(records_[record]);
-  const Entry entry{record, level, range.low.at_level(level), box_of(records_[record])};
+  const MeshTriangle& t = records_[record];
+  const CellRange range = range_of(t);
+  const int level = level_of(t);
+  const Entry entry{record, level, range.low.at_level(level), box_of(low_corner(t), high_corner(t))};
   for_cells(range, level, [&](const Cell3& c) {
     Cell& cell = cells_[slot(c, level)];
     cell.lock();
@@ -226,30 +226,25 @@ bool SurfaceGrid::any_in_cell(const Cell3& c, int level, const CellRange& range,
   return false;
 }
 
-bool SurfaceGrid::intersects_existing(const MeshTriangle& t, std::span<const std::uint32_t> removed,
-                                      std::vector<std::array<Index, 2>>* narrow) const {
-  const auto intersects = [&](const Entry& e) {
-    const MeshTriangle& other = records_[e.record];
-    if (std::find(removed.begin(), removed.end(), e.record) != removed.end()) return false;
-    if (triangles_intersect(t, other)) return true;
-    if (narrow)
-      if (const auto edge = narrow_edge(t, other)) narrow->push_back(*edge);
-    return false;
-  };
-  const CellRange range = range_of(t);
-  const Box box = box_of(t);
-  bool hit = false;
+template <class Test>
+bool SurfaceGrid::any_near(const Vec3& low, const Vec3& high, const Test& test) const {
+  const CellRange range{smallest_cell_at(low), smallest_cell_at(high)};
+  const Box box = box_of(low, high);
+  bool found = false;
   for_cells(range, top_level_,
-            [&](const Cell3& c) { hit = hit || any_in_cell(c, top_level_, range, box, intersects); });
-  return hit;
+            [&](const Cell3& c) { found = found || any_in_cell(c, top_level_, range, box, test); });
+  return found;
 }
 
 bool SurfaceGrid::embedded() const {
   std::atomic<bool> meet{false};
   parallel_for(0, records_.size(), Grains::surface_triangles, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end && !meet.load(std::memory_order_relaxed); ++i) {
-      const auto self = static_cast<std::uint32_t>(i);
-      if (intersects_existing(records_[i], {&self, 1})) meet.store(true, std::memory_order_relaxed);
+      const MeshTriangle& t = records_[i];
+      if (any_near(low_corner(t), high_corner(t), [&](const Entry& e) {
+            return e.record != i && triangles_intersect(t, records_[e.record]);
+          }))
+        meet.store(true, std::memory_order_relaxed);
     }
   });
   return !meet;
@@ -287,17 +282,34 @@ void SurfaceGrid::replace(Edit& edit) {
 bool SurfaceGrid::test(Edit& edit) const {
   find_records(edit);
   edit.narrow_edges.clear();
-  for (const Added& a : edit.added)
-    if (intersects_existing(a.triangle, edit.removed_records, &edit.narrow_edges)) return false;
+  edit.near.clear();
+  if (edit.added.empty()) return true;
   for (std::size_t i = 0; i < edit.added.size(); ++i) {
     const Vec3 low = low_corner(edit.added[i].triangle), high = high_corner(edit.added[i].triangle);
     edit.low = i == 0 ? low : edit.low.cwiseMin(low);
     edit.high = i == 0 ? high : edit.high.cwiseMax(high);
-    for (std::size_t j = 0; j < i; ++j) {
-      if (triangles_intersect(edit.added[i].triangle, edit.added[j].triangle)) return false;
-      if (const auto edge = narrow_edge(edit.added[i].triangle, edit.added[j].triangle))
-        edit.narrow_edges.push_back(*edge);
-    }
+  }
+  // The added triangles are next to each other: one walk through the grid finds what may meet any of them.
+  const auto is_removed = [&](std::uint32_t record) {
+    return std::find(edit.removed_records.begin(), edit.removed_records.end(), record) !=
+           edit.removed_records.end();
+  };
+  any_near(edit.low, edit.high, [&](const Entry& e) {
+    if (!is_removed(e.record)) edit.near.push_back({e.box, e.record});
+    return false;
+  });
+  const auto may_stay = [&](const MeshTriangle& added, const MeshTriangle& other) {
+    if (triangles_intersect(added, other)) return false;
+    if (const auto edge = narrow_edge(added, other)) edit.narrow_edges.push_back(*edge);
+    return true;
+  };
+  for (std::size_t i = 0; i < edit.added.size(); ++i) {
+    const MeshTriangle& t = edit.added[i].triangle;
+    const Box box = box_of(low_corner(t), high_corner(t));
+    for (const Edit::Near& other : edit.near)
+      if (box.meets(other.box) && !may_stay(t, records_[other.record])) return false;
+    for (std::size_t j = 0; j < i; ++j)
+      if (!may_stay(t, edit.added[j].triangle)) return false;
   }
   // Sort: the order of a cell's records depends on the threads.
   std::sort(edit.narrow_edges.begin(), edit.narrow_edges.end());

@@ -26,6 +26,15 @@ class SurfaceSamples;
 /// of a cell's records does not matter, since any intersection decides.
 class SurfaceGrid {
  public:
+  /// A triangle's bounding box, rounded outwards. It separates most pairs without reading their triangles.
+  struct Box {
+    std::array<float, 3> low, high;
+    bool meets(const Box& other) const {
+      for (int k = 0; k < 3; ++k)
+        if (low[k] > other.high[k] || other.low[k] > high[k]) return false;
+      return true;
+    }
+  };
   /// A triangle that an edit adds.
   struct Added {
     MeshTriangle triangle;
@@ -54,6 +63,12 @@ class SurfaceGrid {
     std::vector<std::uint32_t> added_records;
     std::vector<ReassignedSample> reassigned;  ///< filled by SurfaceSamples::reassign_samples()
     // Scratch memory.
+    /// A remaining triangle whose box meets that of the added ones.
+    struct Near {
+      Box box;
+      std::uint32_t record;
+    };
+    std::vector<Near> near;
     std::vector<TriangleDistance> distances;
     std::vector<std::uint32_t> takers;
     std::vector<std::uint8_t> near_sample;
@@ -133,15 +148,6 @@ class SurfaceGrid {
   struct CellRange {
     Cell3 low, high;
   };
-  /// A triangle's bounding box, rounded outwards. It separates most pairs without reading their triangles.
-  struct Box {
-    std::array<float, 3> low, high;
-    bool meets(const Box& other) const {
-      for (int k = 0; k < 3; ++k)
-        if (low[k] > other.high[k] || other.low[k] > high[k]) return false;
-      return true;
-    }
-  };
   struct Entry {
     std::uint32_t record;
     std::int32_t level;
@@ -166,7 +172,7 @@ class SurfaceGrid {
     }
     std::uint8_t locked = 0, finer = 0;
   };
-  static Box box_of(const MeshTriangle& t);
+  static Box box_of(const Vec3& low, const Vec3& high);
   Cell3 smallest_cell_at(const Vec3& p) const;
   CellRange range_of(const MeshTriangle& t) const;
   int level_of(const MeshTriangle& t) const;
@@ -175,10 +181,10 @@ class SurfaceGrid {
   template <class F>
   static void for_cells(const CellRange& range, int level, const F& f);
   void insert(std::uint32_t record);
-  /// Whether t intersects a triangle whose record is not among `removed`. Appends to `narrow`, unless it is
-  /// null, the edges at which t and another triangle are nearly folded together.
-  bool intersects_existing(const MeshTriangle& t, std::span<const std::uint32_t> removed,
-                           std::vector<std::array<Index, 2>>* narrow = nullptr) const;
+  /// Calls `test(entry)` once for each triangle whose box meets that between two corners, until it
+  /// returns true; whether it did.
+  template <class Test>
+  bool any_near(const Vec3& low, const Vec3& high, const Test& test) const;
   /// Calls `test(entry)` for the entries in a cell and smaller ones within it whose boxes meet `box`, each in
   /// one cell only, until it returns true.
   template <class Test>

@@ -48,8 +48,13 @@ class VolumeLedger {
   double utilization() const {
     double largest = 0;
     for (std::size_t r = 0; r < allowed_.size(); ++r)
-      if (allowed_[r] > 0) largest = std::max(largest, std::fabs(net_[r]) / allowed_[r]);
+      largest = std::max(largest, utilization(static_cast<RegionId>(r)));
     return largest;
+  }
+  /// The change of one region as a fraction of its bound; 0 for the outside, and without bounds.
+  /// \pre No task runs.
+  double utilization(RegionId region) const {
+    return region < allowed_.size() && allowed_[region] > 0 ? std::fabs(net_[region]) / allowed_[region] : 0;
   }
 
  private:

@@ -8,8 +8,10 @@
 
 namespace tetwright {
 
-void fit_interfaces(Engine& engine, float floor) {
-  engine.runner().each_star(interface_points(engine.mesh()), Operation::fit,
+void fit_interfaces(Engine& engine, float floor, double above) {
+  const std::vector<Index> points = interface_points(
+      engine.mesh(), [&](RegionId region) { return engine.ledger().utilization(region) > above; });
+  engine.runner().each_star(points, Operation::fit,
                             [&](Workspace& ws) { return fit_to_samples(ws, engine.rules, floor); });
 }
 

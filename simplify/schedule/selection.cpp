@@ -155,8 +155,11 @@ std::vector<Index> points_around(const EditableMesh& mesh, const std::vector<Tet
   });
 }
 
-std::vector<Index> interface_points(const EditableMesh& mesh) {
+std::vector<Index> interface_points(const EditableMesh& mesh, const std::function<bool(RegionId)>& wanted) {
+  std::vector<std::uint8_t> is_wanted(mesh.region_count());
+  for (std::size_t r = 0; r < is_wanted.size(); ++r) is_wanted[r] = wanted(static_cast<RegionId>(r)) ? 1 : 0;
   return marked_points(mesh, [&](Index t, int k) {
+    if (!is_wanted[mesh.region(t)]) return false;
     for (int f = 0; f < 4; ++f)
       if (f != k && mesh.link(t, f).is_interface()) return true;
     return false;

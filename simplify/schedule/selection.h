@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "simplify/constraints/surface_projection.h"
@@ -39,8 +40,8 @@ std::vector<Index> points_around(const EditableMesh& mesh, const std::vector<Tet
 ///
 /// \param faces face_key() of each, ascending.
 std::vector<TetSnapshot> tets_with_faces(const EditableMesh& mesh, const std::vector<Triangle>& faces);
-/// The points of boundary and interfaces.
-std::vector<Index> interface_points(const EditableMesh& mesh);
+/// The points of boundary and interfaces of the regions that `wanted` accepts.
+std::vector<Index> interface_points(const EditableMesh& mesh, const std::function<bool(RegionId)>& wanted);
 /// The boundary points at which two patches meet off any feature edge, or three off any corner.
 std::vector<Index> points_off_features(const EditableMesh& mesh, const SurfaceProjection& projection);
 

@@ -101,20 +101,19 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
     collapse_block(engine, limit, loop_target);
     const std::size_t collapsed = mesh.live_tets();
     const double removed = 1 - static_cast<double>(collapsed) / static_cast<double>(it.tets_before);
-    // If collapses stall near the target, or altogether, changes of connectivity and positions may allow more.
-    // Farther away larger bounds allow more in less time.
+    // If collapses stall, changes of connectivity and positions may allow more. Far from the target, larger
+    // bounds allow as much in less time.
     const bool stalled = removed < TunedLoop::min_removed && percent >= 100;
-    if (collapsed > loop_target &&
-        (static_cast<double>(collapsed) <
-             (stalled ? TunedLoop::stalled_flips_below : TunedLoop::flips_below) * target ||
-         (stalled && removed < TunedLoop::bounds_remove)))
+    if (collapsed > loop_target && (static_cast<double>(collapsed) < TunedLoop::flips_below * target ||
+                                    (stalled && removed < TunedLoop::bounds_remove)))
       flip_and_smooth_block(engine,
                             stalled ? limit : std::min(limit, quality_cutoff(mesh, TunedLoop::flip_percent)));
     // If a body has lost much of its volume, fit its surface back to the middle of its samples; near the
     // target fit every surface.
-    if (collapsed > loop_target && (engine.ledger().utilization() > TunedLoop::fit_above_utilization ||
-                                    static_cast<double>(collapsed) < TunedLoop::fits_below * target))
-      fit_interfaces(engine, 1);
+    const bool near_target = static_cast<double>(collapsed) < TunedLoop::fits_below * target;
+    if (collapsed > loop_target &&
+        (near_target || engine.ledger().utilization() > TunedLoop::fit_above_utilization))
+      fit_interfaces(engine, 1, near_target ? -1 : TunedLoop::fit_above_utilization);
     round.finish();
     // A larger E helps only if E causes the refusals.
     const bool error_refuses =
