@@ -25,8 +25,11 @@ double coarse_share(double cell, double adaptivity) {
 MesherEstimate estimate_mesh(const LabelInput& labels, const MesherOptions& options) {
   const GridFrame frame = label_frame(labels, cell_size(labels, options), options.uniform);
   if (options.uniform) return estimate_mesh(labels, options, ThinCells());
-  return estimate_mesh(labels, options,
-                       count_thin_cells(labels, frame, find_thin_labels(labels, frame, nullptr).finer));
+  ThinCells thin = count_thin_cells(labels, frame, find_thin_labels(labels, frame, nullptr).finer);
+  // Which of them are redundant is known only once there is a field.
+  thin.inside *= EstimateTuning::Labels::kept_thin_cells;
+  thin.outside *= EstimateTuning::Labels::kept_thin_cells;
+  return estimate_mesh(labels, options, thin);
 }
 
 MesherEstimate estimate_mesh(const LabelInput& labels, const MesherOptions& options, const ThinCells& thin) {

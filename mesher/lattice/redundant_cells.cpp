@@ -99,9 +99,7 @@ class CellTest {
       if (p[a] < 0 || p[a] > end_[a]) return false;
     return true;
   }
-  RegionIndex evaluate(const Quarters& p) {
-    return sampler_->nearest(unit_ * Vec3(p[0], p[1], p[2])).region;
-  }
+  RegionIndex evaluate(const Quarters& p) { return sampler_->nearest(unit_ * Vec3(p[0], p[1], p[2])).region; }
   RegionIndex at(const Quarters& p) {
     const MortonKey key = morton_encode(p);
     const auto found = std::lower_bound(points_.begin(), points_.end(), key);

@@ -260,9 +260,9 @@ struct SimplifyTuning {
     /// are wasted. Working on all bad tets from 10 times the target on doubles the time of the last
     /// iterations for the same result after improvement.
     static constexpr double flip_percent = 40, flips_below = 2;
-    /// Fraction of the tets that a stalled iteration must remove to be repeated with larger bounds alone, above
-    /// `flips_below`. With 1 (flips of all bad tets whenever collapses stall) 60 % of a loop went into flips
-    /// where thin labels stall it from 9 times the target on; with 0.02 its result is the same.
+    /// Fraction of the tets that a stalled iteration must remove to be repeated with larger bounds alone,
+    /// above `flips_below`. With 1 (flips of all bad tets whenever collapses stall) 60 % of a loop went into
+    /// flips where thin labels stall it from 9 times the target on; with 0.02 its result is the same.
     static constexpr double bounds_remove = 0.02;
     /// Fraction of the worst Quality^3 that annealing must keep. With smaller values (0: any positive
     /// quality) the loop ends with 5-10 % of the tets below 0.1 sr instead of 2-3 %. Larger values need a

@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "tests/mesher/checked_labels.h"
 #include "tests/mesher/fields.h"
 #include "tests/mesher/test_surfaces.h"
 #include "tetwright/error.h"
@@ -42,16 +43,6 @@ double percent_bad(const TetMesh& mesh) {
   for (const auto& [a, b, c, d] : mesh.tets)
     bad += min_solid_angle(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]) < 0.1;
   return 100.0 * static_cast<double>(bad) / static_cast<double>(mesh.tets.size());
-}
-
-std::string text(const TetMesh& mesh) {
-  std::string all;
-  for (const std::string& line : topology_lines(topology(mesh))) all += line + "\n";
-  return all;
-}
-
-void expect_line(const TetMesh& mesh, const std::string& line) {
-  EXPECT_NE(text(mesh).find(line + "\n"), std::string::npos) << line << "\nnot in\n" << text(mesh);
 }
 
 TEST(Materials, NestedSpheres) {
