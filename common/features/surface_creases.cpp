@@ -5,6 +5,7 @@
 
 #include "common/features/edge_uses.h"
 #include "common/parallel/bucket_sort.h"
+#include "common/parallel/parallel_sort.h"
 #include "common/portable_math.h"
 #include "tetwright/resources.h"
 #include "tetwright/surface_mesh.h"
@@ -15,28 +16,41 @@ std::vector<EdgeUse> edge_uses(std::span<const Triangle> triangles, std::span<co
   std::size_t points = 0;
   for (const Triangle& t : triangles)
     points = std::max(points, std::size_t{*std::max_element(t.begin(), t.end())} + 1);
-  // An endpoint has few edges, so that sorting them takes less time than sorting all edges at once.
+  const auto use = [&](std::size_t t, std::size_t k) {
+    const Index p = triangles[t][k], q = triangles[t][(k + 1) % 3];
+    return EdgeUse{std::uint64_t{std::min(p, q)} << 32 | std::max(p, q), groups.empty() ? 0 : groups[t],
+                   static_cast<Index>(t), p < q};
+  };
+  const auto is_before = [](const EdgeUse& x, const EdgeUse& y) {
+    if (x.key != y.key) return x.key < y.key;
+    return x.group != y.group ? x.group < y.group : x.triangle < y.triangle;
+  };
   std::vector<EdgeUse> uses;
+  // An endpoint has few edges, so that sorting them takes less time than sorting all edges at once, unless
+  // most points have none.
+  constexpr std::size_t max_points_per_triangle = 4;
+  if (points > max_points_per_triangle * triangles.size()) {
+    uses.reserve(3 * triangles.size());
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k) uses.push_back(use(t, k));
+    parallel_sort(uses, is_before);
+    return uses;
+  }
   std::vector<std::size_t> starts;
   bucket_sort(
       triangles.size(), points,
       [&](std::size_t t, const auto& emit) {
         for (std::size_t k = 0; k < 3; ++k) {
-          const Index p = triangles[t][k], q = triangles[t][(k + 1) % 3];
-          emit(std::min(p, q), EdgeUse{std::uint64_t{std::min(p, q)} << 32 | std::max(p, q),
-                                       groups.empty() ? 0 : groups[t], static_cast<Index>(t), p < q});
+          const EdgeUse of_edge = use(t, k);
+          emit(std::size_t{ends_of(of_edge.key)[0]}, of_edge);
         }
       },
-      [](const EdgeUse& use) { return std::size_t{ends_of(use.key)[0]}; }, starts, uses);
+      [](const EdgeUse& of_edge) { return std::size_t{ends_of(of_edge.key)[0]}; }, starts, uses);
   constexpr std::size_t endpoint_grain = 4096;
   parallel_for(0, points, endpoint_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p)
       std::sort(uses.begin() + static_cast<std::ptrdiff_t>(starts[p]),
-                uses.begin() + static_cast<std::ptrdiff_t>(starts[p + 1]),
-                [](const EdgeUse& x, const EdgeUse& y) {
-                  if (x.key != y.key) return x.key < y.key;
-                  return x.group != y.group ? x.group < y.group : x.triangle < y.triangle;
-                });
+                uses.begin() + static_cast<std::ptrdiff_t>(starts[p + 1]), is_before);
   });
   return uses;
 }

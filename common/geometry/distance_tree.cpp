@@ -13,6 +13,8 @@ namespace {
 /// Squared sine of a triangle's angle at its first corner below which its plane is not used. At 1e-8 rounding
 /// turns the normal by up to 1e-11.
 constexpr double thin_squared = 1e-8;
+/// Squared normals below this may have lost digits to underflow.
+constexpr double min_squared = 1e-280;
 /// Error of a height above a triangle's plane, as a share of the distance along the axes from its first
 /// corner.
 constexpr double height_error = 1e-10;
@@ -35,7 +37,7 @@ DistanceTree::DistanceTree(std::span<const Vec3> points, std::span<const Triangl
     const Vec3 ab = triangles_[t][1] - triangles_[t][0], ac = triangles_[t][2] - triangles_[t][0];
     const Vec3 normal = ab.cross(ac);
     const double squared = normal.squaredNorm();
-    normals_[t] = squared > thin_squared * ab.squaredNorm() * ac.squaredNorm()
+    normals_[t] = squared > min_squared && squared > thin_squared * ab.squaredNorm() * ac.squaredNorm()
                       ? Vec3(normal / std::sqrt(squared))
                       : Vec3(Vec3::Zero());
   }

@@ -123,7 +123,9 @@ std::vector<TriangleReference> split_references(std::span<const std::array<Vec3,
   if (parts.empty()) return references;
   std::erase_if(references, [&](const TriangleReference& r) { return longest_side(r.box) > reached; });
   for (const Part& part : parts) {
-    const Vec3 pad = rounding * part.box.low.cwiseAbs().cwiseMax(part.box.high.cwiseAbs());
+    double largest = 0;
+    for (const Vec3& c : triangles[part.triangle]) largest = std::max(largest, c.lpNorm<Eigen::Infinity>());
+    const Vec3 pad = Vec3::Constant(rounding * largest);
     references.push_back({part.triangle, {part.box.low - pad, part.box.high + pad}});
   }
   std::stable_sort(references.begin(), references.end(),

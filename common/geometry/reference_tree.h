@@ -20,8 +20,8 @@ struct TriangleReference {
 
 /// The boxes of triangles, of long ones in several parts (early split clipping, Ernst & Greiner 2007): the
 /// box of a long sliver is mostly empty, so that a search would visit slivers far away. Parts are halved
-/// until they are as short as the number of parts allows, at most one more for each triangle and some
-/// thousand. In the order of triangles; O(n). \pre finite coordinates, so far from the largest double that
+/// until they are as short as the number of parts allows, at most three more for each triangle and
+/// 256. In the order of triangles; O(n). \pre finite coordinates, so far from the largest double that
 /// their differences are finite
 std::vector<TriangleReference> split_references(std::span<const std::array<Vec3, 3>> triangles);
 

@@ -297,11 +297,12 @@ ThinLabels find_thin_labels(const LabelInput& labels, const GridFrame& frame, co
   coarsest = finder.coarsest_interface_level(coarsest);
   std::vector<std::vector<MortonKey>> by_depth;
   for (int depth = 0; depth <= DomainTuning::Refinement::max_levels && finder.find_voxels(depth); ++depth) {
-    if (depth == DomainTuning::Refinement::max_levels)
+    if (depth == DomainTuning::Refinement::max_levels) {
       thin.too_thin = finder.too_thin();
-    else
+    } else {
       by_depth.push_back(finder.cells_around(depth));
-    if (finder.found_islands()) ++thin.island_levels;
+      if (finder.found_islands()) ++thin.island_levels;
+    }
   }
   thin.finer.refinement = static_cast<int>(by_depth.size());
   thin.finer.cells.resize(by_depth.size() + 1);

@@ -19,6 +19,8 @@ constexpr int cell_side = 4;  // quarters
 
 Quarters sum(const Quarters& a, const Quarters& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
 
+Quarters difference(const Quarters& a, const Quarters& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+
 /// An edge of the lattice's tets by its ends, relative to the lower corner of a cell.
 struct LatticeEdge {
   Quarters a, b;
@@ -31,21 +33,63 @@ Quarters cell_corner(int k) {
   return {(k & 1) * cell_side, (k >> 1 & 1) * cell_side, (k >> 2 & 1) * cell_side};
 }
 
-/// The edges of the tets of a cell that has neighbours of its size: from its centre to its corners and to its
-/// neighbours' centres, and its own.
+/// From a corner or centre of a cell to its neighbours in a lattice of cells of one size.
+std::vector<Quarters> lattice_steps() {
+  std::vector<Quarters> steps;
+  for (int k = 0; k < 8; ++k) steps.push_back(difference(cell_corner(k), cell_centre));
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int length : {-cell_side, cell_side}) {
+      steps.emplace_back();
+      steps.back()[axis] = length;
+    }
+  return steps;
+}
+
+struct Face {
+  Quarters centre;
+  std::vector<Quarters> steps;  ///< from there to the cell's centre and the face's corners
+  bool contains(const Quarters& p) const {
+    for (int axis = 0; axis < 3; ++axis)
+      if (centre[axis] != cell_centre[axis] && p[axis] != centre[axis]) return false;
+    return true;
+  }
+};
+
+std::vector<Face> cell_faces() {
+  std::vector<Face> faces;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int side : {0, cell_side}) {
+      Face face{cell_centre, {}};
+      face.centre[axis] = side;
+      face.steps.push_back(difference(cell_centre, face.centre));
+      for (int k = 0; k < 8; ++k)
+        if (face.contains(cell_corner(k))) face.steps.push_back(difference(cell_corner(k), face.centre));
+      faces.push_back(std::move(face));
+    }
+  return faces;
+}
+
+/// All edges that the tets of a cell can have. Those of a cell whose neighbours have its size go from its
+/// centre to its corners and to its neighbours' centres, and along its own edges; on the box and beside
+/// smaller cells they also go to the centres of its faces and to the midpoints of its edges.
 std::vector<LatticeEdge> lattice_edges() {
   std::vector<LatticeEdge> edges;
+  std::vector<LatticeEdge> own;
   for (int k = 0; k < 8; ++k) {
     edges.push_back({cell_centre, cell_corner(k)});
     for (int axis = 0; axis < 3; ++axis)
-      if (!(k >> axis & 1)) edges.push_back({cell_corner(k), cell_corner(k | 1 << axis)});
+      if (!(k >> axis & 1)) own.push_back({cell_corner(k), cell_corner(k | 1 << axis)});
   }
-  for (int axis = 0; axis < 3; ++axis)
-    for (const int step : {-cell_side, cell_side}) {
-      Quarters beyond = cell_centre;
-      beyond[axis] += step;
-      edges.push_back({cell_centre, beyond});
-    }
+  for (const LatticeEdge& e : own) {
+    edges.push_back(e);
+    edges.push_back({cell_centre, e.middle()});
+  }
+  for (const Face& face : cell_faces()) {
+    for (const Quarters& step : face.steps) edges.push_back({face.centre, sum(face.centre, step)});
+    edges.push_back({cell_centre, sum(face.centre, difference(face.centre, cell_centre))});
+    for (const LatticeEdge& e : own)
+      if (face.contains(e.middle())) edges.push_back({face.centre, e.middle()});
+  }
   return edges;
 }
 
@@ -78,13 +122,15 @@ class CellTest {
     const Quarters low = low_of(cell);
     for (const LatticeEdge& e : edges_) {
       const Quarters a = sum(low, e.a), b = sum(low, e.b);
-      if (!in_box(b)) continue;  // on the box, the centre of the face is a point of both lattices
+      if (!in_box(b)) continue;
       const RegionIndex middle = at(sum(low, e.middle()));
       if (middle != at(a) && middle != at(b)) return true;
     }
-    if (is_alone(sum(low, cell_centre))) return true;
+    if (is_alone(sum(low, cell_centre), steps_)) return true;
     for (int k = 0; k < 8; ++k)
-      if (is_alone(sum(low, cell_corner(k)))) return true;
+      if (is_alone(sum(low, cell_corner(k)), steps_)) return true;
+    for (const Face& face : faces_)
+      if (const Quarters p = sum(low, face.centre); on_box(p) && is_alone(p, face.steps)) return true;
     return false;
   }
 
@@ -99,6 +145,11 @@ class CellTest {
       if (p[a] < 0 || p[a] > end_[a]) return false;
     return true;
   }
+  bool on_box(const Quarters& p) const {
+    for (int a = 0; a < 3; ++a)
+      if (p[a] == 0 || p[a] == end_[a]) return true;
+    return false;
+  }
   RegionIndex evaluate(const Quarters& p) { return sampler_->nearest(unit_ * Vec3(p[0], p[1], p[2])).region; }
   RegionIndex at(const Quarters& p) {
     const MortonKey key = morton_encode(p);
@@ -107,27 +158,19 @@ class CellTest {
                ? regions_[static_cast<std::size_t>(found - points_.begin())]
                : evaluate(p);
   }
-  /// Whether no neighbour of a lattice point is in its region.
-  bool is_alone(const Quarters& p) {
+  /// Whether none of the points at `steps` from a lattice point is in its region.
+  bool is_alone(const Quarters& p, std::span<const Quarters> steps) {
     const RegionIndex own = at(p);
-    const auto shares = [&](const Quarters& step) {
+    return std::none_of(steps.begin(), steps.end(), [&](const Quarters& step) {
       const Quarters q = sum(p, step);
       return in_box(q) && at(q) == own;
-    };
-    constexpr int half = cell_side / 2;
-    for (int k = 0; k < 8; ++k)
-      if (shares({k & 1 ? half : -half, k & 2 ? half : -half, k & 4 ? half : -half})) return false;
-    for (int axis = 0; axis < 3; ++axis)
-      for (const int length : {-cell_side, cell_side}) {
-        Quarters step{};
-        step[axis] = length;
-        if (shares(step)) return false;
-      }
-    return true;
+    });
   }
 
   std::unique_ptr<FieldSampler> sampler_;
   const std::vector<LatticeEdge>& edges_;
+  std::vector<Face> faces_ = cell_faces();
+  std::vector<Quarters> steps_ = lattice_steps();
   double unit_;  ///< a quarter cell, lattice units
   Quarters end_;
   std::vector<MortonKey> points_;  ///< ascending
@@ -136,11 +179,12 @@ class CellTest {
 
 }  // namespace
 
-void drop_redundant_cells(RefinementRegions& finer, const MaterialField& field, int exempt,
+void drop_redundant_cells(RefinementRegions& finer, const MaterialField& field, int exempt, double largest,
                           const Progress* progress) {
   const std::vector<LatticeEdge> edges = lattice_edges();
   const auto levels = static_cast<std::size_t>(finer.refinement) + 1;
   for (std::size_t level = static_cast<std::size_t>(1 + exempt); level < levels; ++level) {
+    if (std::ldexp(1.0, static_cast<int>(level) - finer.refinement) > largest) break;
     if (progress) progress->throw_if_stopped();
     const std::vector<MortonKey>& cells = finer.cells[level];
     std::vector<MortonKey> kept = parallel_collect<MortonKey>(

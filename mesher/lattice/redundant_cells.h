@@ -7,24 +7,26 @@
 
 namespace tetwright {
 
-/// Drops the cells whose splitting would not change the topology of any region.
+/// Drops cells whose splitting would not show another topology of the regions.
 ///
-/// The lattice of halved cells has the points of the lattice of whole ones and the midpoints of its edges. If
-/// every midpoint is in the region of an end of its edge, each region within a tet remains a ball around the
-/// same vertices, and the same pairs of regions meet: the smaller cells would only move interfaces, which are
-/// computed exactly on any edge. A cell is kept if an edge of its tets is not of that kind, if one of its
-/// points is the only one of its region among its neighbours (label_lattice() would relabel it), or if it
-/// contains a kept cell of a finer level.
+/// If every edge that the tets of a cell can have, alone or beside smaller cells, has its midpoint in the
+/// region of one of its ends, each region within such a tet is taken for a ball around the same vertices as
+/// in the lattice of halved cells: the smaller cells would only move interfaces, which are computed exactly
+/// on any edge. This compares points of the lattices, not what lies between them, so that it is no proof. A
+/// cell is also kept if one of its points is the only one of its region among its neighbours
+/// (label_lattice() would relabel it), or if it contains a kept cell of a finer level.
 ///
-/// Tests one level after another, from the finest one: O(cells), about 15 field evaluations for each. The
+/// Tests one level after another, from the finest one: O(cells), about 40 field evaluations for each. The
 /// result does not depend on the number of threads.
 ///
 /// \param finer cells to be split; receives those kept. Levels that become empty at the fine end are removed.
 /// \param field unrefined
 /// \param exempt number of levels, from the finest one, whose cells are all kept
+/// \param largest edge of the largest cells that may be dropped, lattice units. Cells larger than a voxel
+///   would cut off a part of thin labels.
 /// \param progress may be null
 /// \throws Interrupted
-void drop_redundant_cells(RefinementRegions& finer, const MaterialField& field, int exempt,
+void drop_redundant_cells(RefinementRegions& finer, const MaterialField& field, int exempt, double largest,
                           const Progress* progress);
 
 }  // namespace tetwright

@@ -90,7 +90,8 @@ std::vector<std::uint8_t> SurfaceDistance::find_clear(std::span<const Triangle> 
 
 /// Finds on which sides of triangles the inside is. That changes only where something meets the surface: one
 /// triangle tells it for all that are connected with it by edges of two triangles each, oriented alike.
-/// Triangles whose normal is determined by rounding do not tell.
+/// Triangles whose normal is determined by rounding do not tell, nor do those so near another one that a
+/// point beside them may be beyond that.
 void SurfaceDistance::find_sides(std::span<const Triangle> triangles, const std::vector<Index>& order) {
   const std::vector<std::uint8_t> is_clear = find_clear(triangles, order);
   struct Use {
@@ -122,6 +123,7 @@ void SurfaceDistance::find_sides(std::span<const Triangle> triangles, const std:
         std::sqrt(std::max({(b - a).squaredNorm(), (c - b).squaredNorm(), (a - c).squaredNorm()}));
     return longest > 0 ? (b - a).cross(c - a).norm() / longest : 0;
   };
+  const auto middle = [](const std::array<Vec3, 3>& t) { return Vec3((t[0] + t[1] + t[2]) / 3); };
   std::vector<std::size_t> highest(triangles.size(), order.size());  // by component
   std::vector<double> heights(order.size());
   const auto tells = [&](std::size_t i) { return order[i] < triangles.size() && is_clear[order[i]]; };
@@ -129,24 +131,24 @@ void SurfaceDistance::find_sides(std::span<const Triangle> triangles, const std:
     if (!tells(i)) continue;
     heights[i] = height(i);
     std::size_t& best = highest[components.root(order[i])];
-    if (best == order.size() || heights[i] > heights[best]) best = i;
+    if (heights[i] > DistanceTuning::Triangles::min_height &&
+        (best == order.size() || heights[i] > heights[best]) && is_alone(middle(triangles_[i])))
+      best = i;
   }
   std::vector<Sides> of_component(triangles.size(), Sides::unknown);
-  parallel_for(
-      0, triangles.size(), DistanceGrains::sided_components, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t c = begin; c < end; ++c) {
-          if (highest[c] == order.size() || !(heights[highest[c]] > DistanceTuning::Triangles::min_height))
-            continue;
-          const auto& [a, b, d] = triangles_[highest[c]];
-          const Vec3 middle = (a + b + d) / 3,
-                     step = DistanceTuning::Triangles::side_distance * normals_[highest[c]];
-          const bool behind = inside(middle - step), in_front = inside(middle + step);
-          of_component[c] = behind && in_front ? Sides::both
-                            : behind           ? Sides::behind
-                            : in_front         ? Sides::unknown
-                                               : Sides::neither;
-        }
-      });
+  parallel_for(0, triangles.size(), DistanceGrains::sided_components,
+               [&](std::size_t begin, std::size_t end) {
+                 for (std::size_t c = begin; c < end; ++c) {
+                   if (highest[c] == order.size()) continue;
+                   const Vec3 from = middle(triangles_[highest[c]]),
+                              step = DistanceTuning::Triangles::side_distance * normals_[highest[c]];
+                   const bool behind = inside(from - step), in_front = inside(from + step);
+                   of_component[c] = behind && in_front ? Sides::both
+                                     : behind           ? Sides::behind
+                                     : in_front         ? Sides::unknown
+                                                        : Sides::neither;
+                 }
+               });
   sides_.assign(order.size(), Sides::unknown);
   for (std::size_t i = 0; i < order.size(); ++i)
     if (tells(i) && heights[i] > DistanceTuning::Triangles::min_height)

@@ -96,10 +96,10 @@ bool decode_base64(std::string_view text, std::size_t begin, std::span<char> to)
     return v >= 0;
   };
   bool valid = decode_part(first) && decode_part(last);
-  char* at = to.data() + (3 * (first + 1) - begin);
-  for (std::size_t g = first + 1; g < last; ++g, at += 3) {
+  for (std::size_t g = first + 1; g < last; ++g) {
     const std::int32_t v = group(g);
     valid &= v >= 0;
+    char* const at = to.data() + (3 * g - begin);
     for (std::size_t k = 0; k < 3; ++k) at[k] = byte(v, k);
   }
   return valid;

@@ -224,7 +224,8 @@ bool VtuData::decode_blocks(const Source& source, const Blocks& blocks, const De
     if (!unpacker) unpacker = make_block_unpacker(compressor_);
     const std::uint64_t begin = b * blocks.size_of_each;
     packed.resize(static_cast<std::size_t>(blocks.packed_sizes[b]));
-    decoded.resize(static_cast<std::size_t>(std::min(blocks.size_of_each, blocks.size - begin)));
+    const bool is_last = b + 1 == blocks.packed_sizes.size();
+    decoded.resize(static_cast<std::size_t>(is_last ? blocks.size - begin : blocks.size_of_each));
     if (decode_range(source, static_cast<std::size_t>(begins[b]), packed) &&
         unpacker->unpack({packed.data(), packed.size()}, decoded))
       out.block(static_cast<std::size_t>(begin), {decoded.data(), decoded.size()});
@@ -288,17 +289,23 @@ void VtuData::decode_from(Source source, pugi::xml_node array, std::size_t max_b
   if (block_size > 0 && blocks - 1 > possible / block_size) check_size(UINT64_MAX, possible);
   const std::uint64_t size = last > 0 ? (blocks - 1) * block_size + last : blocks * block_size;
   check_size(size, possible);
-  out.begin(static_cast<std::size_t>(size));
-  if (out.block && block_size % out.unit == 0 && decode_blocks(source, {packed_sizes, block_size, size}, out))
-    return;
   std::string packed;
-  for (std::size_t b = 0; b < blocks; ++b) {
-    if (packed_sizes[b] > source.max_left()) fail(array, cut_short());
+  const auto decode_next = [&](Source& from, std::size_t b) {
+    if (packed_sizes[b] > from.max_left()) fail(array, cut_short());
     packed.resize(static_cast<std::size_t>(packed_sizes[b]));
-    if (source.read(packed.data(), packed.size()) != packed.size()) fail(array, cut_short());
+    if (from.read(packed.data(), packed.size()) != packed.size()) fail(array, cut_short());
     decoded.resize(static_cast<std::size_t>(b + 1 == blocks && last > 0 ? last : block_size));
     if (!unpacker->unpack(packed, decoded))
       fail(array, "block " + std::to_string(b) + " of its compressed data is damaged");
+  };
+  // Memory for what the header promises is taken only if it is true of the first block.
+  Source beginning = source;
+  decode_next(beginning, 0);
+  out.begin(static_cast<std::size_t>(size));
+  if (out.block && block_size % out.unit == 0 && decode_blocks(source, {packed_sizes, block_size, size}, out))
+    return;
+  for (std::size_t b = 0; b < blocks; ++b) {
+    decode_next(source, b);
     out.piece(decoded);
   }
 }
