@@ -18,9 +18,9 @@ struct CellGrains {
 struct CellTuning {
   /// Cells for a target number of tets.
   struct TargetCount {
-    /// Dense tets per target tet: fewer leave the simplifier no choice, more take time. With 28 instead of 40,
-    /// six scans at 10,000 tets (three seeds each) take 0.86 of the time at 0.99 of the rms distance; with 20,
-    /// four of them are 3 to 12 % further from the surface.
+    /// Dense tets per target tet: fewer leave the simplifier no choice, more take time. With 28 instead of
+    /// 40, six scans at 10,000 tets (three seeds each) take 0.89 of the time at 0.99 of the rms distance;
+    /// with 20, four of them are 3 to 10 % further from the surface.
     static constexpr double surface_dense_per_target = 28, label_dense_per_target = 5;
     /// Likewise for surfaces with creases. Their patches may be narrower than a cell, and features that cells
     /// do not resolve are lost. Nine parts were meshed at 10,000 tets: with 100 instead of 40, the two with

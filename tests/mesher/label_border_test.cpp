@@ -95,9 +95,7 @@ TEST(LabelBorder, CellsOfAThinVolumeAreNotFlat) {
   for (const double cell : {4.0, 6.0}) {
     const DenseMesh meshed = checked_mesh(labels, cell);
     EXPECT_LE(meshed.report.cell_size, 1.5);
-    // Cuts leave some poor tets; flat cells would leave hardly any other.
-    const MeshStatistics statistics = mesh_statistics(meshed.mesh, 0.1);
-    EXPECT_LT(20 * statistics.below_count, meshed.mesh.tets.size());
+    EXPECT_EQ(mesh_statistics(meshed.mesh, 0.1).below_count, 0u);
   }
 }
 
@@ -115,7 +113,7 @@ TEST(LabelBorder, LabelsAreCutOffByPlanes) {
       const DenseMesh meshed = checked_mesh(labels, cell);
       EXPECT_GT(expect_cut_off(labels, meshed.mesh, 0.04), 300u);
       for (const auto& [tag, ratio] : compare_with_voxels(labels, meshed.mesh).volumes)
-        EXPECT_NEAR(ratio, 1, 0.02) << tag;
+        EXPECT_NEAR(ratio, 1, 0.016) << tag;  // whole cells at the sides round off their corners
       for (const MaterialTag tag : {1, 2, 3})
         expect_line(meshed.mesh, "material " + std::to_string(tag) + ": " + disc);
       // Along the edges of the box from its corner.

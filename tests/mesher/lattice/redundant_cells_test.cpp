@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
+#include "common/random.h"
 #include "mesher/labels/label_field.h"
 #include "mesher/labels/label_thickness.h"
 #include "tests/mesher/checked_labels.h"
@@ -52,6 +54,52 @@ TEST(RedundantCells, TopologyIsThatOfAllCells) {
     EXPECT_EQ(with_voxels.lost, 0u) << comparison_line(with_voxels);
     EXPECT_EQ(text(meshed.mesh), text(checked_mesh(labels, 0.5).mesh));
   }
+}
+
+TEST(RedundantCells, TopologyAtTheBorderOfTheVolume) {
+  // Walks of three labels, most of them along the border, where tets have corners in the centres of faces.
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
+    Random random(seed);
+    constexpr int size = 8;
+    std::array<MaterialTag, size * size * size> tags{};
+    tags.fill(static_cast<MaterialTag>(random.below(2)));
+    for (MaterialTag tag = 2; tag < 5; ++tag) {
+      std::array<int, 3> at{};
+      for (int& c : at) c = random.below(2) == 0 ? 0 : static_cast<int>(random.below(size));
+      for (std::uint32_t steps = 15 + random.below(45); steps > 0; --steps) {
+        tags[static_cast<std::size_t>((at[2] * size + at[1]) * size + at[0])] = tag;
+        int& c = at[random.below(3)];
+        c = std::clamp(c + (random.below(2) == 0 ? -1 : 1), 0, size - 1);
+      }
+    }
+    const LabelInput labels = make_labels({size, size, size}, [&](int x, int y, int z) {
+      return tags[static_cast<std::size_t>((z * size + y) * size + x)];
+    });
+    MesherOptions options;
+    options.voxel_size = 1;
+    const TetMesh mesh = mesh_labels(labels, options, nullptr).mesh;
+    options.voxel_size = 0.5;
+    EXPECT_EQ(text(mesh), text(mesh_labels(labels, options, nullptr).mesh)) << seed;
+  }
+}
+
+TEST(RedundantCells, CellsLargerThanAVoxelAreKept) {
+  const Cells cells = split_cells(thin_labels(), 2);
+  ASSERT_GE(cells.all.cells.size(), 3u);
+  EXPECT_EQ(cells.kept.cells.back(), cells.all.cells.back());
+  EXPECT_LT(count(cells.kept), count(cells.all));
+}
+
+TEST(RedundantCells, AnIslandDoesNotExemptOthers) {
+  const auto volume = [](bool island) {
+    return make_labels({32, 32, 32}, [=](int x, int y, int z) -> MaterialTag {
+      if (island && x == 28 && y == 28 && z == 28) return 3;
+      return z == 8 && std::min(x, y) > 2 && std::max(x, y) < 30 ? 2 : 1;
+    });
+  };
+  const std::size_t with = count(split_cells(volume(true), 2).kept),
+                    without = count(split_cells(volume(false), 2).kept);
+  EXPECT_LT(with, without + without / 4);
 }
 
 TEST(RedundantCells, KeptCellsContainThoseOfTheNextLevel) {

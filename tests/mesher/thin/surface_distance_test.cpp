@@ -208,6 +208,39 @@ TEST(SurfaceDistance, ConvexEdgesAreNotThinAndWedgesAre) {
   EXPECT_EQ(distance.thickness(*below, Side::wall, 0.99, 2), 2);
 }
 
+/// A pyramid without its top from a base of side 12 in the plane of z `base` to a square of side 8.
+TriangleMesh frustum(double base, double top) {
+  TriangleMesh mesh;
+  for (const auto& [half, z] : {std::pair(6.0, base), std::pair(4.0, top)})
+    for (const auto& [x, y] : {std::pair(-1, -1), std::pair(1, -1), std::pair(1, 1), std::pair(-1, 1)})
+      mesh.points.push_back(Vec3(half * x, half * y, z));
+  mesh.triangles = {{0, 2, 1}, {0, 3, 2}, {4, 5, 6}, {4, 6, 7}};
+  for (Index i = 0; i < 4; ++i) {
+    const Index j = (i + 1) % 4;
+    mesh.triangles.push_back({i, j, j + 4});
+    mesh.triangles.push_back({i, j + 4, i + 4});
+  }
+  return enclosed_volume(mesh) < 0 ? turned_over(mesh) : mesh;
+}
+
+TEST(SurfaceDistance, BodiesAlmostInContactDoNotTellTheSidesOfEachOther) {
+  // A point beside the largest triangle of one, from which the sides of the others would follow, is beyond
+  // the other one's.
+  const double gap = 1e-6;
+  const SurfaceDistance distance = distance_of(turned(joined(frustum(gap / 2, 5), frustum(-gap / 2, -5))));
+  Random random(3);
+  std::size_t known = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 p(16 * random.uniform() - 8, 16 * random.uniform() - 8, 16 * random.uniform() - 8);
+    const auto place = distance.nearest(p, 20);
+    ASSERT_TRUE(place);
+    if (place->side == 0) continue;
+    ++known;
+    EXPECT_EQ(place->side < 0, distance.inside(p)) << p.transpose();
+  }
+  EXPECT_GT(known, 0u);
+}
+
 TEST(SurfaceDistance, AtAnEdgeTheFaceThatFacesThePoint) {
   const SurfaceDistance box = distance_of(make_box(Vec3(0, 0, 0), Vec3(4, 4, 4)));
   EXPECT_NEAR(box.nearest(Vec3(4.1, 2, 4.3), 1)->normal.z(), 1, 1e-12);

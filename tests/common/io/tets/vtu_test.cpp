@@ -223,6 +223,26 @@ TEST(Vtu, ANumberOutOfRangeInALaterBlockIsNamed) {
   expect_input_error(read_vtu, write_vtu(mesh), "cell 39990 refers to point 50000 of 40000");
 }
 
+TEST(Vtu, ABlockThatIsShorterThanItsHeaderSaysIsDamaged) {
+  const Encoding e{.compressor = "ZLib"};
+  const Array points = some_points(false)[0];
+  const std::string good = file(e, {points}, some_cells(false), {field("MaterialID", -7)});
+  // One block of 36 bytes in the place of 48; blocks of 36 and 0 bytes, of which the last may be larger.
+  const std::string packed = packed_block(points.bytes.substr(0, 36), e.compressor);
+  for (const std::uint32_t block_size : {36u, 0u}) {
+    std::string header, payload;
+    for (const std::uint32_t n : {1u, block_size, 48u, static_cast<std::uint32_t>(packed.size())})
+      header.append(reinterpret_cast<const char*>(&n), sizeof n);
+    append_base64(payload, header);
+    append_base64(payload, packed);
+    const std::string bad = replaced(good, encoded(points.bytes, e), payload);
+    for (const unsigned threads : {1u, 3u}) {
+      const ThreadLimit limit(threads);
+      expect_input_error(read_vtu, bad, "block 0 of its compressed data is damaged");
+    }
+  }
+}
+
 TEST(Vtu, EveryEncoding) {
   for (const char* format : {"ascii", "binary", "base64", "raw"})
     for (const char* compressor : {"", "ZLib", "LZ4", "LZMA"})
