@@ -227,7 +227,7 @@ TEST(Vtu, ABlockThatIsShorterThanItsHeaderSaysIsDamaged) {
   const Encoding e{.compressor = "ZLib"};
   const Array points = some_points(false)[0];
   const std::string good = file(e, {points}, some_cells(false), {field("MaterialID", -7)});
-  // One block of 36 bytes in the place of 48; blocks of 36 and 0 bytes, of which the last may be larger.
+  // One block of 36 bytes instead of 48; blocks of 36 and 0 bytes, of which the last may be larger.
   const std::string packed = packed_block(points.bytes.substr(0, 36), e.compressor);
   for (const std::uint32_t block_size : {36u, 0u}) {
     std::string header, payload;
