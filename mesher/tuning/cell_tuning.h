@@ -19,9 +19,10 @@ struct CellTuning {
   /// Cells for a target number of tets.
   struct TargetCount {
     /// Dense tets per target tet: fewer leave the simplifier no choice, more take time. With 28 instead of
-    /// 40, six scans at 10,000 tets (three seeds each) take 0.89 of the time at 0.99 of the rms distance;
-    /// with 20, four of them are 3 to 10 % further from the surface.
-    static constexpr double surface_dense_per_target = 28, label_dense_per_target = 5;
+    /// 40, six scans at 10,000 tets (three seeds each) take 0.89 of the time at 0.99 of the rms distance, but
+    /// one gets a handle where its parts are near each other, and a knot of 3,000 tets loses 1.1 % of its
+    /// volume. With 20, four of the scans are 3 to 10 % further from the surface.
+    static constexpr double surface_dense_per_target = 40, label_dense_per_target = 5;
     /// Likewise for surfaces with creases. Their patches may be narrower than a cell, and features that cells
     /// do not resolve are lost. Nine parts were meshed at 10,000 tets: with 100 instead of 40, the two with
     /// strips of half a cell have half and a third of the distance from creases (99th percentile), and lose

@@ -37,14 +37,14 @@ TEST(TargetSize, SurfacesHaveAmpleTetsAndMoreWithCreases) {
   const MesherInput ball = make_mesher_input({{"", 1, make_sphere(1), ""}});
   EXPECT_EQ(resolution_for_target(ball, 1, {}), 32);
   const std::size_t for_ball = dense_tets(ball, resolution_for_target(ball, 5000, {}));
-  EXPECT_GT(for_ball, 18u * 5000);
-  EXPECT_LT(for_ball, 42u * 5000);
+  EXPECT_GT(for_ball, 25u * 5000);
+  EXPECT_LT(for_ball, 60u * 5000);
   EXPECT_THROW(resolution_for_target(ball, 0, {}), UsageError);
 
   const MesherInput cube = make_input({std::get<TriangleMesh>(make_sample("cube"))});
-  const int with_creases = resolution_for_target(cube, 20000, {}),
-            without = resolution_for_target(cube, 20000, {.rule = FeatureAngle::Rule::off});
-  EXPECT_NEAR(with_creases, std::sqrt(100.0 / 28) * without, 0.1 * without);
+  const int with_creases = resolution_for_target(cube, 5000, {}),
+            without = resolution_for_target(cube, 5000, {.rule = FeatureAngle::Rule::off});
+  EXPECT_NEAR(with_creases, std::sqrt(2.5) * without, 0.1 * without);
 }
 
 TEST(TargetSize, VolumesTakeLargerCellsForFewTetsAndSmallerOnesForMany) {

@@ -269,7 +269,7 @@ double default_cell_size(const LabelInput& labels);
 /// \throws UsageError for a target of 0
 double cell_size_for_target(const LabelInput& labels, std::size_t target_tets, const MesherOptions& options);
 
-/// The resolution that gives about 28 dense tets per target tet, enough for the simplifier to have a choice,
+/// The resolution that gives about 40 dense tets per target tet, enough for the simplifier to have a choice,
 /// or 100 if surfaces have creases at this angle. It is at least 32, and gives at most about 20 million dense
 /// tets.
 /// \throws UsageError for a target of 0
