@@ -36,6 +36,7 @@ Quarters cell_corner(int k) {
 /// From a corner or centre of a cell to its neighbours in a lattice of cells of one size.
 std::vector<Quarters> lattice_steps() {
   std::vector<Quarters> steps;
+  steps.reserve(8 + 6);
   for (int k = 0; k < 8; ++k) steps.push_back(difference(cell_corner(k), cell_centre));
   for (int axis = 0; axis < 3; ++axis)
     for (const int length : {-cell_side, cell_side}) {
@@ -183,7 +184,7 @@ void drop_redundant_cells(RefinementRegions& finer, const MaterialField& field, 
                           const Progress* progress) {
   const std::vector<LatticeEdge> edges = lattice_edges();
   const auto levels = static_cast<std::size_t>(finer.refinement) + 1;
-  for (std::size_t level = static_cast<std::size_t>(1 + exempt); level < levels; ++level) {
+  for (std::size_t level = static_cast<std::size_t>(exempt) + 1; level < levels; ++level) {
     if (std::ldexp(1.0, static_cast<int>(level) - finer.refinement) > largest) break;
     if (progress) progress->throw_if_stopped();
     const std::vector<MortonKey>& cells = finer.cells[level];

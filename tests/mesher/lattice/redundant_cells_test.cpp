@@ -61,19 +61,25 @@ TEST(RedundantCells, TopologyAtTheBorderOfTheVolume) {
   for (std::uint64_t seed = 0; seed < 30; ++seed) {
     Random random(seed);
     constexpr int size = 8;
-    std::array<MaterialTag, size * size * size> tags{};
-    tags.fill(static_cast<MaterialTag>(random.below(2)));
+    std::array<std::array<std::array<MaterialTag, size>, size>, size> tags{};
+    const auto background = static_cast<MaterialTag>(random.below(2));
+    for (auto& slice : tags)
+      for (auto& row : slice) row.fill(background);
     for (MaterialTag tag = 2; tag < 5; ++tag) {
-      std::array<int, 3> at{};
-      for (int& c : at) c = random.below(2) == 0 ? 0 : static_cast<int>(random.below(size));
+      std::array<std::size_t, 3> at{};
+      for (std::size_t& c : at) c = random.below(2) == 0 ? 0 : random.below(size);
       for (std::uint32_t steps = 15 + random.below(45); steps > 0; --steps) {
-        tags[static_cast<std::size_t>((at[2] * size + at[1]) * size + at[0])] = tag;
-        int& c = at[random.below(3)];
-        c = std::clamp(c + (random.below(2) == 0 ? -1 : 1), 0, size - 1);
+        tags[at[2]][at[1]][at[0]] = tag;
+        std::size_t& c = at[random.below(3)];
+        if (random.below(2) == 0)
+          c -= c > 0 ? 1 : 0;
+        else
+          c += c + 1 < size ? 1 : 0;
       }
     }
     const LabelInput labels = make_labels({size, size, size}, [&](int x, int y, int z) {
-      return tags[static_cast<std::size_t>((z * size + y) * size + x)];
+      const auto index = [](int c) { return static_cast<std::size_t>(c); };
+      return tags[index(z)][index(y)][index(x)];
     });
     MesherOptions options;
     options.voxel_size = 1;

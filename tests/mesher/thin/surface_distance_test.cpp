@@ -101,7 +101,7 @@ int told_sides(const TriangleMesh& mesh, const SurfaceDistance& distance) {
     const Triangle& t = mesh.triangles[i % mesh.triangles.size()];
     const Vec3 &a = mesh.points[t[0]], &b = mesh.points[t[1]];
     const std::array<Vec3, 3> points{anywhere(3), a + anywhere(0.05), (a + b) / 2 + anywhere(0.05)};
-    const Vec3 p = points[i % 3];
+    const Vec3& p = points[i % 3];
     const auto place = distance.nearest(p, 10);
     if (!place || place->side == 0) continue;
     ++told;
