@@ -70,7 +70,7 @@ nlohmann::json in_child(const std::function<nlohmann::json()>& work) {
   close(ends[0]);
   int status = 0;
   waitpid(child, &status, 0);
-  const auto answer = nlohmann::json::parse(text, nullptr, false);
+  auto answer = nlohmann::json::parse(text, nullptr, false);
   if (status != 0 || answer.is_discarded())
     return {{"error", "the process ended with status " + std::to_string(status)}};
   return answer;
@@ -78,6 +78,7 @@ nlohmann::json in_child(const std::function<nlohmann::json()>& work) {
 
 ProgramRun run_program(const std::vector<std::string>& arguments) {
   std::vector<char*> pointers;
+  pointers.reserve(arguments.size() + 1);
   for (const std::string& a : arguments) pointers.push_back(const_cast<char*>(a.c_str()));
   pointers.push_back(nullptr);
   std::fflush(nullptr);

@@ -37,7 +37,7 @@ class CosineBins {
 
   /// \param cosine at least -1 and at most 1, but for rounding
   std::size_t bin(double cosine) const {
-    const double cell = std::clamp((cosine + 1) * (cells / 2), 0.0, cells - 1.0);
+    const double cell = std::clamp((cosine + 1) * (0.5 * cells), 0.0, cells - 1.0);
     return bin_from(firsts_[static_cast<std::size_t>(cell)], cosine);
   }
   /// Whether a cosine in the bin is so close to one of its ends that its angle may be in the next bin.

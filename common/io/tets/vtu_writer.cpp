@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "common/io/elements/element_types.h"
+#include "common/io/elements/vtk_cells.h"
 #include "common/io/encodings/vtu_arrays.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/names/mesh_parts.h"
