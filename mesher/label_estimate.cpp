@@ -25,11 +25,16 @@ double coarse_share(double cell, double adaptivity) {
 MesherEstimate estimate_mesh(const LabelInput& labels, const MesherOptions& options) {
   const GridFrame frame = label_frame(labels, cell_size(labels, options), options.uniform);
   if (options.uniform) return estimate_mesh(labels, options, ThinCells());
-  ThinCells thin = count_thin_cells(labels, frame, find_thin_labels(labels, frame, nullptr).finer);
-  // Which of them are redundant is known only once there is a field.
-  thin.inside *= EstimateTuning::Labels::kept_thin_cells;
-  thin.outside *= EstimateTuning::Labels::kept_thin_cells;
-  return estimate_mesh(labels, options, thin);
+  RefinementRegions finer = find_thin_labels(labels, frame, nullptr).finer;
+  const ThinCells all = count_thin_cells(labels, frame, finer);
+  for (std::size_t level = 0; level < finer.cells.size(); ++level)
+    if (std::ldexp(1.0, static_cast<int>(level) - finer.refinement) <= largest_redundant_cell(labels, frame))
+      finer.cells[level].clear();
+  ThinCells kept = count_thin_cells(labels, frame, finer);
+  // Which of the others are redundant is known only once there is a field.
+  kept.inside += EstimateTuning::Labels::kept_thin_cells * (all.inside - kept.inside);
+  kept.outside += EstimateTuning::Labels::kept_thin_cells * (all.outside - kept.outside);
+  return estimate_mesh(labels, options, kept);
 }
 
 MesherEstimate estimate_mesh(const LabelInput& labels, const MesherOptions& options, const ThinCells& thin) {

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/tolerances.h"
 #include "mesher/features/border_creases.h"
 #include "mesher/field_mesher.h"
 #include "mesher/labels/label_field.h"
@@ -74,8 +73,8 @@ DenseMesh mesh_labels(const LabelInput& labels, const MesherOptions& options, Pr
   validate_estimate(estimate_mesh(labels, options, ThinCells()));
   const std::shared_ptr<const MaterialField> field =
       LabelField::make(labels, voxels, options.keep_outside, progress);
-  drop_redundant_cells(thin.finer, *field, thin.island_levels,
-                       voxel_size(labels) * (1 + tolerance::coinciding_cells) / voxels.cell_size, progress);
+  drop_redundant_cells(thin.finer, *field, thin.island_levels, largest_redundant_cell(labels, voxels),
+                       progress);
   report.estimate = estimate_mesh(labels, options, count_thin_cells(labels, voxels, thin.finer));
   validate_estimate(report.estimate);
   for (const ThinPart& p : thin.too_thin)

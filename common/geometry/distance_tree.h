@@ -13,8 +13,8 @@ namespace tetwright {
 /// Exact distances from triangles of any shape. Accepts any finite coordinates and any defects.
 ///
 /// Immutable after construction; all functions may be called concurrently. Built in O(n log n); the result
-/// does not depend on the number of threads. About 100 bytes for each triangle and 130
-/// for each part of one (split_references()).
+/// does not depend on the number of threads. About 100 bytes for each triangle and 130 for
+/// each part of one (split_references()).
 class DistanceTree {
  public:
   /// Copies its input. Distances are in the unit of `points`.

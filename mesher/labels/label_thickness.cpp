@@ -6,6 +6,7 @@
 
 #include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
+#include "mesher/labels/label_field.h"
 #include "mesher/tuning/domain_tuning.h"
 #include "mesher/tuning/label_tuning.h"
 
@@ -333,6 +334,10 @@ ThinCells count_thin_cells(const LabelInput& labels, const GridFrame& frame, con
     }
   }
   return count;
+}
+
+double largest_redundant_cell(const LabelInput& labels, const GridFrame& frame) {
+  return voxel_size(labels) * (1 + tolerance::coinciding_cells) / frame.cell_size;
 }
 
 }  // namespace tetwright

@@ -35,4 +35,7 @@ struct ThinCells {
 };
 ThinCells count_thin_cells(const LabelInput& labels, const GridFrame& frame, const RefinementRegions& finer);
 
+/// Edge of the largest cells that drop_redundant_cells() may drop, a voxel, lattice units.
+double largest_redundant_cell(const LabelInput& labels, const GridFrame& frame);
+
 }  // namespace tetwright

@@ -85,8 +85,8 @@ struct EstimateTuning {
     static constexpr double tets_per_outer_face = 1;
     /// Tets per cell that is split where labels are thin, by whether its centre is in a label.
     static constexpr double dense_per_thin_cell = 96, lattice_per_thin_cell_outside = 30;
-    /// The fraction of the cells where labels are thin that drop_redundant_cells() keeps: 0.11 to 0.2 of
-    /// cells of a voxel, up to 0.35 of larger ones, on five volumes.
+    /// The fraction of the cells of at most a voxel where labels are thin that drop_redundant_cells() keeps:
+    /// 0.11 to 0.2 on five volumes, some more where larger cells are halved, too.
     static constexpr double kept_thin_cells = 0.25;
     /// Smoothing reduces the area of interfaces to `smooth_share`; only cells below `small_cell`, voxels,
     /// resolve that.

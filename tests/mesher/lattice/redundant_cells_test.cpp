@@ -23,7 +23,8 @@ Cells split_cells(const LabelInput& labels, double cell) {
   const ThinLabels thin = find_thin_labels(labels, frame, nullptr);
   Cells cells{thin.finer, thin.finer};
   const auto field = LabelField::make(labels, frame, false, nullptr);
-  drop_redundant_cells(cells.kept, *field, thin.island_levels, 1.01 / cell, nullptr);
+  drop_redundant_cells(cells.kept, *field, thin.island_levels, largest_redundant_cell(labels, frame),
+                       nullptr);
   return cells;
 }
 
