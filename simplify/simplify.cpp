@@ -33,6 +33,7 @@ namespace {
 using Closing = SimplifyTuning::Closing;
 using Features = SimplifyTuning::Features;
 using Improve = SimplifyTuning::Improve;
+using Merging = SimplifyTuning::Merging;
 using Memory = SimplifyTuning::Memory;
 using TimeLimit = SimplifyTuning::TimeLimit;
 
@@ -145,6 +146,18 @@ bool is_bounded(const SimplifyOptions& options) {
   return options.sizes || options.min_edge > 0 || std::isfinite(options.max_edge);
 }
 
+/// Coarsens the mesh in bulk if it has so many more tets than the target that this pays off and nothing but
+/// their number is asked for.
+void merge_points(Engine& engine, const SimplifyOptions& options) {
+  const auto ratio =
+      static_cast<double>(engine.mesh().live_tets()) / static_cast<double>(options.target_tets);
+  if (!(ratio >= Merging::min_ratio) || is_bounded(options) || options.tolerance > 0) return;
+  const double edge = engine.rules.objective.quality.ideal_edge;
+  engine.merge_points({.max_distance = Merging::max_distance_edges * edge,
+                       .max_deviation = Merging::max_deviation_edges * edge,
+                       .seed = options.seed});
+}
+
 /// The final improvement of the tuned schedule.
 ///
 /// \param target number of tets; 0: the current one.
@@ -231,9 +244,12 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
   // Each step may take a large part of the time if the mesh is large for the time limit.
   const bool built = done_in_time([&] {
     engine.throw_if_stopped();
-    if (tuned) engine.compact();
+    if (!tuned) return;
+    engine.input_samples().keep_surface(options.surface, options.tolerance > 0);
     engine.throw_if_stopped();
-    if (tuned) engine.input_samples().keep_surface(options.surface, options.tolerance > 0);
+    merge_points(engine, options);
+    engine.throw_if_stopped();
+    engine.compact();
   });
   const double build = seconds_since(start);
   const LoopTimes loops_build = loop_times();

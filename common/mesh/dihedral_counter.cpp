@@ -12,7 +12,8 @@ namespace {
 constexpr std::size_t bins = DihedralHistogram::bins;
 
 /// Cosines closer to each other may belong to equal angles. Rounding changes a cosine by less than 1e-15, and
-/// the angle of dihedral_angles() by less than 1e-15 radians, which is less in its cosine.
+/// the angle of dihedral_angles() by less than 1e-15 radians, which is less in its cosine. Angles of lattices
+/// are at ends of bins (45, 60, 90 degrees) and are to be in one bin, whatever the rounding.
 constexpr double uncertain = 1e-12;
 /// Squared normals in this range neither underflow nor overflow in products of two.
 constexpr double min_square = 1e-140, max_square = 1e140;
@@ -27,7 +28,8 @@ class CosineBins {
     for (double& end : ends_) {
       const double next = c * cosine - s * sine;
       s = s * cosine + c * sine;
-      end = c = next;
+      c = next;
+      end = c + uncertain;
     }
     for (std::size_t i = 0; i < cells; ++i) {
       const double largest = 2 * static_cast<double>(i + 1) / cells - 1;
@@ -40,11 +42,6 @@ class CosineBins {
     const double cell = std::clamp((cosine + 1) * (0.5 * cells), 0.0, cells - 1.0);
     return bin_from(firsts_[static_cast<std::size_t>(cell)], cosine);
   }
-  /// Whether a cosine in the bin is so close to one of its ends that its angle may be in the next bin.
-  bool near_end(std::size_t bin, double cosine) const {
-    return (bin + 1 < bins && cosine < ends_[bin] + uncertain) ||
-           (bin > 0 && cosine > ends_[bin - 1] - uncertain);
-  }
 
  private:
   static constexpr std::size_t cells = 256;
@@ -54,13 +51,15 @@ class CosineBins {
     return bin;
   }
 
-  std::array<double, bins - 1> ends_;         ///< cosines of the upper ends of all bins but the last
+  std::array<double, bins - 1> ends_;  ///< of all bins but the last: an angle at the end is not in the bin
   std::array<std::uint8_t, cells> firsts_{};  ///< first bin of equal parts of [-1, 1]
 };
 
 /// \param degrees 0 to 180
 std::size_t dihedral_bin(double degrees) {
-  return std::min(bins - 1, static_cast<std::size_t>(degrees / DihedralHistogram::step));
+  constexpr double uncertain_degrees = 57.3 * uncertain;
+  return std::min(bins - 1,
+                  static_cast<std::size_t>((degrees + uncertain_degrees) / DihedralHistogram::step));
 }
 
 }  // namespace
@@ -96,13 +95,12 @@ void DihedralCounter::add(const std::array<Vec3, 4>& tet) {
     const double cosine = -normals[other[0]].dot(normals[other[1]]) * (scales[other[0]] * scales[other[1]]);
     const std::size_t bin = cosine_bins.bin(cosine);
     const bool may_be_min = cosine > min_cosine_ - uncertain, may_be_max = cosine < max_cosine_ + uncertain;
-    if (!may_be_min && !may_be_max && !cosine_bins.near_end(bin, cosine)) {
-      ++histogram_.counts[bin];
-      continue;
-    }
+    ++histogram_.counts[bin];
+    if (!may_be_min && !may_be_max) continue;
     if (!computed) exact = dihedral_angles(tet);
     computed = true;
-    add_exact(exact[e]);
+    min_ = std::min(min_, exact[e]);
+    max_ = std::max(max_, exact[e]);
     min_cosine_ = std::max(min_cosine_, cosine);
     max_cosine_ = std::min(max_cosine_, cosine);
   }

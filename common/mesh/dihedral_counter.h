@@ -8,8 +8,9 @@
 
 namespace tetwright {
 
-/// Smallest, largest and histogram of the dihedral angles of many tets, exactly as dihedral_angles() gives
-/// them. Nearly all angles are only compared by their cosines, since arc tangents take most of the time.
+/// Smallest, largest and histogram of the dihedral angles of many tets. The first two are exactly as
+/// dihedral_angles() gives them; angles that reach the end of a bin but for rounding are in the next one.
+/// Nearly all angles are only compared by their cosines, since arc tangents take most of the time.
 /// Different objects may be used concurrently.
 class DihedralCounter {
  public:

@@ -11,6 +11,10 @@
 
 namespace tetwright {
 
+/// Sum of the signed volumes of each region's tets; working coordinates cubed. Parallel.
+/// \pre No task runs.
+std::vector<double> region_volumes(const EditableMesh& mesh);
+
 /// Keeps the volume of every region within a fraction of its initial value. Error(op) only bounds single
 /// operations, and many small losses add up: a simplified ball lies inside the original.
 class VolumeLedger {
@@ -18,11 +22,9 @@ class VolumeLedger {
   /// Bounds the changes to the fraction `share` of the current volumes.
   /// \pre No task runs.
   void open(const EditableMesh& mesh, double share) {
-    allowed_.assign(mesh.region_count(), 0);
-    net_.assign(mesh.region_count(), 0);
-    for (Index t = 0; t < mesh.tet_slots(); ++t)
-      if (!mesh.dead(t)) allowed_[mesh.region(t)] += share * mesh.signed_volume(t);
-    for (double& a : allowed_) a = std::fabs(a);
+    allowed_ = region_volumes(mesh);
+    net_.assign(allowed_.size(), 0);
+    for (double& a : allowed_) a = std::fabs(share * a);
   }
 
   /// Whether every change keeps its region within the bounds, or brings it nearer to them. Safe concurrently

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -86,6 +87,7 @@ class EditableMesh {
 
   // Reading.
   const Vec3& position(Index point) const { return positions_[point]; }
+  std::span<const Vec3> positions() const { return positions_; }
   /// A tet of the point; no_index: the point is dead.
   Index incident_tet(Index point) const { return incident_tets_[point]; }
   /// Whether the point's star was changed since the last begin_round().

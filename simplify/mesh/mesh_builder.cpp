@@ -56,6 +56,24 @@ void MeshBuilder::build(TetMesh&& input) {
   freeze_sheet_corners();
 }
 
+void MeshBuilder::replace_tets(std::vector<Tet>&& tets, std::vector<RegionId>&& regions,
+                               const std::vector<InterfaceFace>& faces) {
+  mesh_.tets_ = {};
+  reserve_touched(mesh_.tets_, tets.size());
+  mesh_.tets_.resize(tets.size());
+  parallel_for(0, tets.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) mesh_.tets_[i] = {tets[i], {}};
+  });
+  tets = {};
+  mesh_.regions_ = std::move(regions);
+  mesh_.qualities_.assign(mesh_.tets_.size(), 0);
+  mesh_.live_ = mesh_.tets_.size();
+  mesh_.free_tets_.reset(mesh_.tets_.size(), mesh_.tets_.size());
+  link_faces();
+  mesh_.set_incident_tets();
+  set_faces(faces);
+}
+
 void MeshBuilder::take_points(std::vector<Vec3>&& points) {
   std::atomic<bool> finite{true};  // relaxed: it only has to become visible eventually
   parallel_for(0, points.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
@@ -235,6 +253,49 @@ void MeshBuilder::take_patches(const std::vector<InterfaceTriangle>& interfaces)
                      std::to_string(patches.size() - known) +
                          " of its triangles with patches are no faces of boundary or interfaces");
   mesh_.interface_patches_ = std::move(inner);
+}
+
+void MeshBuilder::set_faces(const std::vector<InterfaceFace>& faces) {
+  using Face = std::pair<Triangle, const InterfaceFace*>;
+  std::vector<Face> by_points(faces.size());
+  parallel_for(0, faces.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) by_points[i] = {face_key(faces[i].ids), &faces[i]};
+  });
+  parallel_sort(by_points, [](const Face& x, const Face& y) { return x.first < y.first; });
+  std::vector<std::uint8_t> on_sheet;
+  for (const InterfaceFace& f : faces) {
+    if (!f.is_sheet()) continue;
+    on_sheet.resize(mesh_.positions_.size(), 0);
+    for (const Index p : f.ids) on_sheet[p] = 1;
+  }
+  std::atomic<std::size_t> known{0};
+  using Patch = std::pair<Triangle, PatchId>;
+  std::vector<Patch> inner = parallel_collect<Patch>(
+      0, mesh_.tets_.size(), Grains::slots, [&](std::size_t begin, std::size_t end, std::vector<Patch>& out) {
+        std::size_t found = 0;
+        for (std::size_t t = begin; t < end; ++t)
+          for (int f = 0; f < 4; ++f) {
+            FaceLink& link = mesh_.tets_[t].links[f];
+            const Triangle ids = face_of(mesh_.tets_[t].points, f);
+            if (!link.is_interface() &&
+                (on_sheet.empty() || !on_sheet[ids[0]] || !on_sheet[ids[1]] || !on_sheet[ids[2]]))
+              continue;
+            const Triangle key = face_key(ids);
+            const auto at = std::lower_bound(by_points.begin(), by_points.end(), key,
+                                             [](const Face& x, const Triangle& y) { return x.first < y; });
+            if (at == by_points.end() || at->first != key) continue;
+            const PatchId patch = at->second->patch;
+            found += link.is_outside() ? 2 : 1;  // an inner face is found from both sides
+            if (!link.is_outside() && patch != 0)
+              out.emplace_back(
+                  face_key({mesh_.original(ids[0]), mesh_.original(ids[1]), mesh_.original(ids[2])}), patch);
+            link = link.is_outside() ? FaceLink::outside(patch) : FaceLink::to(link.tet(), true);
+          }
+        known.fetch_add(found, std::memory_order_relaxed);
+      });
+  if (known.load() != 2 * faces.size())
+    throw InputError(name_, 0, "its faces changed while its points were merged");
+  mesh_.interface_patches_ = FacePatches(inner.begin(), inner.end());
 }
 
 std::vector<Index> MeshBuilder::points_with_split_stars() const {

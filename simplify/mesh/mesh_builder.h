@@ -16,6 +16,14 @@ class MeshBuilder {
   /// \param name the mesh's name in messages; must outlive this object.
   MeshBuilder(EditableMesh& mesh, const std::string& name) : mesh_(mesh), name_(name) {}
   void build(TetMesh&& input);
+  /// Replaces the tets of a mesh that has been built, with other points than `tets` dead, and links them.
+  ///
+  /// \param faces those between two regions and of sheets, with their patches.
+  /// \throws InputError if a face has more than two tets, or two on one side, or if `faces` are others than
+  /// the
+  ///   tets have.
+  void replace_tets(std::vector<Tet>&& tets, std::vector<RegionId>&& regions,
+                    const std::vector<InterfaceFace>& faces);
 
  private:
   void take_points(std::vector<Vec3>&& points);
@@ -29,6 +37,8 @@ class MeshBuilder {
   std::vector<Index> sheet_corners() const;
   /// Sets the faces' patches from the input's interfaces.
   void take_patches(const std::vector<InterfaceTriangle>& interfaces);
+  /// Marks the links across sheets and sets all patches.
+  void set_faces(const std::vector<InterfaceFace>& faces);
   /// Splits points whose star consists of parts not joined by faces, and freezes them with all their tets.
   /// Also freezes tets that share more than one face with another.
   void split_stars();

@@ -36,6 +36,16 @@ TetMesh Engine::take() && {
   return std::move(mesh_).to_mesh();
 }
 
+void Engine::merge_points(const PointMerging& options) {
+  const std::vector<double> before = region_volumes(mesh_);
+  if (!tetwright::merge_points(mesh_, options)) return;
+  const std::vector<double> after = region_volumes(mesh_);
+  std::vector<VolumeChange> changes;
+  for (std::size_t r = 0; r < after.size(); ++r)
+    changes.push_back({static_cast<RegionId>(r), after[r] - before[r]});
+  constrained_.ledger.commit(changes);
+}
+
 void Engine::compact() {
   const bool first = !std::exchange(compacted_, true);
   if (!first) constrained_.keep_patches();

@@ -7,6 +7,7 @@
 
 #include "simplify/constraints/constrained_mesh.h"
 #include "simplify/constraints/surface_projection.h"
+#include "simplify/mesh/point_merging.h"
 #include "simplify/schedule/block_runner.h"
 #include "simplify/schedule/input_samples.h"
 #include "simplify/schedule/round_recorder.h"
@@ -49,6 +50,11 @@ class Engine {
   /// Compacts the mesh, leaves free slots for operations that add elements, and rebuilds the grid. Every
   /// schedule calls this first, and rate_all() after setting its objective.
   void compact();
+  /// Coarsens the mesh in bulk: tetwright::merge_points().
+  /// \pre No operation has run; before compact().
+  void merge_points(const PointMerging& options);
+  /// Number of tets of the mesh as it came.
+  std::size_t first_tets() const { return first_tets_; }
   /// Compacts the mesh and gives its triangles samples: InputSamples::assign().
   /// \pre input_samples().keep_surface() has been called.
   void assign_samples(double edge);
@@ -77,6 +83,7 @@ class Engine {
   ConstrainedMesh constrained_;
   EditableMesh& mesh_ = constrained_.mesh;
   SurfaceGrid& grid_ = constrained_.grid;
+  const std::size_t first_tets_ = mesh_.live_tets();
   SurfaceProjection projection_;
   InputSamples samples_;
   std::optional<EdgeSizes> sizes_;

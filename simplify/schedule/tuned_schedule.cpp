@@ -63,8 +63,9 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
   EditableMesh& mesh = engine.mesh();
   BlockRules& rules = engine.rules;
   const auto target = static_cast<double>(loop_target);
-  const double log_first =
-      portable_log(std::max(static_cast<double>(mesh.live_tets()) / target, 1 + tolerance::at_target));
+  // Merging points has done the first part of the loop.
+  const auto first_tets = static_cast<double>(counted ? engine.first_tets() : mesh.live_tets());
+  const double log_first = portable_log(std::max(first_tets / target, 1 + tolerance::at_target));
   const double max_error = Schedules::max_useful_error * std::max(1.0, options.gamma / 10);
   rules.objective.kind = Objective::Kind::paper;
   rules.objective.quality.needle_angle = TunedLoop::needle_angle;

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simplify/constraints/volume_ledger.h"
+
+#include "simplify/tuning/tuning.h"
+#include "tetwright/resources.h"
+
+namespace tetwright {
+
+std::vector<double> region_volumes(const EditableMesh& mesh) {
+  // Parts of fixed size, added in order, so that rounding is the same for any number of threads.
+  constexpr std::size_t grain = 16 * SimplifyTuning::Grains::slots;
+  const std::size_t regions = mesh.region_count();
+  std::vector<std::vector<double>> parts((mesh.tet_slots() + grain - 1) / grain);
+  parallel_for(0, mesh.tet_slots(), grain, [&](std::size_t begin, std::size_t end) {
+    std::vector<double>& sums = parts[begin / grain];
+    sums.assign(regions, 0);
+    for (std::size_t i = begin; i < end; ++i)
+      if (const auto t = static_cast<Index>(i); !mesh.dead(t)) sums[mesh.region(t)] += mesh.signed_volume(t);
+  });
+  std::vector<double> volumes(regions, 0);
+  for (const std::vector<double>& part : parts)
+    for (std::size_t r = 0; r < regions; ++r) volumes[r] += part[r];
+  return volumes;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+
+#include "simplify/mesh/editable_mesh.h"
+#include "simplify/tuning/tuning.h"
+
+namespace tetwright {
+
+/// Bounds for merge_points(). Lengths in working coordinates.
+struct PointMerging {
+  double max_distance;  ///< of a point from the neighbour onto which it moves, and of edges of surfaces
+  /// Max distance of the three points of a face from the plane of the face that replaces it.
+  double max_deviation;
+  std::uint64_t seed = 1;  ///< selects the points that stay
+  /// Min cosine of the angle between the normal of each face at a point of a surface and their mean; other
+  /// points stay.
+  double min_smooth_cosine = SimplifyTuning::Merging::min_smooth_cosine;
+  double min_turn_cosine = SimplifyTuning::Merging::min_turn_cosine;  ///< by which the normal of a face turns
+  /// Min ratio of twice the area of a face to the square of its longest edge.
+  double min_face_shape = SimplifyTuning::Merging::min_face_shape;
+};
+
+/// Coarsens a mesh in bulk, several times faster than collapse by collapse: points of a maximal independent
+/// set stay, and most others move onto a neighbour that stays, at once; elements with two equal points
+/// vanish. Only points inside a material and points of a surface around which it is smooth, with one patch,
+/// move; the latter along its edges. The result is proven to keep the topology and to be embedded:
+///
+/// - Every point, edge and triangle of the new surfaces comes from a contractible part of the old ones, so
+///   they are homeomorphic (Youngs 1948): clusters have Euler characteristic 1; the edges between two
+///   clusters and the triangles that join these edges form a path; no two triangles become the same.
+/// - No two triangles of the new boundary intersect, and all remaining tets are positive. They cover each
+///   point as often as the boundary winds around it, so once if it is inside: tets do not overlap, interfaces
+///   do not meet, and neighbours across a face remain neighbours.
+///
+/// Moves that violate this are undone. Parallel; the result does not depend on the number of threads.
+/// Links, incident tets and patches are set anew; points that moved are dead, and all other points keep their
+/// numbers and positions.
+///
+/// \return false if nothing was changed, since a tet is not positive (exact sign), surfaces intersect, or
+///   there are too many tets
+/// \pre no operation has run
+bool merge_points(EditableMesh& mesh, const PointMerging& options);
+
+}  // namespace tetwright

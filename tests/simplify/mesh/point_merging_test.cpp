@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "simplify/mesh/point_merging.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "common/geometry/predicates.h"
+#include "tests/simplify/meshes.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
+#include "tetwright/sheets.h"
+#include "tetwright/simplify.h"
+
+namespace tetwright::point_merging_test {
+namespace {
+
+constexpr double unbounded = std::numeric_limits<double>::infinity();
+/// Nothing but topology and positive tets limits the moves.
+constexpr PointMerging lax{.max_distance = unbounded,
+                           .max_deviation = unbounded,
+                           .min_smooth_cosine = 0,
+                           .min_turn_cosine = -1,
+                           .min_face_shape = 0};
+
+/// Merges points of a mesh, and checks it if that changes anything.
+std::optional<TetMesh> merged(const TetMesh& mesh, const PointMerging& options) {
+  EditableMesh editable(TetMesh(mesh), "test");
+  PointMerging working = options;
+  working.max_distance *= editable.space().scale();
+  working.max_deviation *= editable.space().scale();
+  if (!merge_points(editable, working)) return std::nullopt;
+  EXPECT_TRUE(editable.links_consistent());
+  EXPECT_TRUE(editable.all_positive());
+  TetMesh after = std::move(editable).to_mesh();
+  for (const MeshFinding& f : check_mesh(after))
+    if (kind_of(f.code).severity == Severity::error) ADD_FAILURE() << mesh_finding_line(f);
+  for (const std::string& d : topology_differences(topology(mesh), topology(after))) ADD_FAILURE() << d;
+  return after;
+}
+
+std::map<MaterialTag, double> volumes(const TetMesh& mesh) {
+  std::map<MaterialTag, double> sums;
+  for (std::size_t i = 0; i < mesh.tets.size(); ++i) {
+    const Tet& t = mesh.tets[i];
+    sums[mesh.materials[i]] +=
+        orient3d_value(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) / 6;
+  }
+  return sums;
+}
+
+/// Two materials side by side with a cavity of 2^3 cubes, and a sheet of 4 x 4 squares in one of them. Their
+/// interface has two patches. Positions of inner points are random.
+TetMesh two_materials() {
+  constexpr int n = 12;
+  TetMesh mesh = grid_mesh({2 * n, n, n}, [](int x, int y, int z) -> std::optional<MaterialTag> {
+    const auto hollow = [](int i) { return i == 5 || i == 6; };
+    if (hollow(x) && hollow(y) && hollow(z)) return std::nullopt;
+    return x < n ? -3 : 8;
+  });
+  mesh.interfaces = find_interfaces(mesh);
+  for (InterfaceTriangle& t : mesh.interfaces)
+    if (t.pair() == MaterialPair(-3, 8) &&
+        std::all_of(t.ids.begin(), t.ids.end(), [&](Index p) { return mesh.points[p].y() <= 5; }))
+      t.patch = 7;
+  const auto on_sheet = [&](Index p) {
+    const Vec3& at = mesh.points[p];
+    return at.z() == 6 && at.x() >= n + 4 && at.x() <= n + 8 && at.y() >= 4 && at.y() <= 8;
+  };
+  std::vector<InterfaceTriangle> sheet;
+  for (const MeshFace& f : mesh_faces(mesh.tets, mesh.points.size()))
+    if (f.count == 2 && std::all_of(f.ids.begin(), f.ids.end(), on_sheet)) sheet.push_back({f.ids, 8, 8, 1});
+  append_sheets(mesh.interfaces, sheet);
+  std::vector<std::uint8_t> on_surface(mesh.points.size(), 0);
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    for (const Index p : t.ids) on_surface[p] = 1;
+  Random random(5);
+  for (std::size_t p = 0; p < mesh.points.size(); ++p)
+    for (int a = 0; a < 3; ++a)
+      if (const double by = 0.2 * (random.uniform() - 0.5); !on_surface[p]) mesh.points[p][a] += by;
+  return mesh;
+}
+
+/// The area of the interface between two materials, by patch.
+std::map<std::uint16_t, double> patch_areas(const TetMesh& mesh, const MaterialPair& pair) {
+  std::map<std::uint16_t, double> areas;
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    if (t.pair() == pair)
+      areas[t.patch] += (mesh.points[t.ids[1]] - mesh.points[t.ids[0]])
+                            .cross(mesh.points[t.ids[2]] - mesh.points[t.ids[0]])
+                            .norm() /
+                        2;
+  return areas;
+}
+
+/// A ring of `around` segments with a square cross-section of `across` cubes, bent to a torus whose tube has
+/// a round cross-section.
+TetMesh torus(int around, int across) {
+  TetMesh mesh = grid_mesh({around, across, across}, [](int, int, int) { return 1; });
+  // Join both ends: a point at the far end becomes the one at the near end.
+  std::vector<Index> joined(mesh.points.size());
+  for (Index p = 0; p < joined.size(); ++p) {
+    joined[p] = p;
+    for (Index q = 0; q < joined.size(); ++q)
+      if (mesh.points[p] == mesh.points[q] + Vec3(around, 0, 0)) joined[p] = q;
+  }
+  for (Tet& t : mesh.tets)
+    for (Index& p : t) p = joined[p];
+  const double half = across / 2.0;
+  for (Vec3& at : mesh.points) {
+    const double u = at.y() - half, v = at.z() - half;
+    const double square = std::max(std::fabs(u), std::fabs(v)), round = std::hypot(u, v);
+    const double scale = round > 0 ? square / round : 0;
+    const double angle = -2 * 3.141592653589793 * at.x() / around;
+    const double radius = 3 * half + scale * u;
+    at = {radius * std::cos(angle), radius * std::sin(angle), scale * v};
+  }
+  const double total = volumes(mesh).at(1);
+  if (total < 0)
+    for (Tet& t : mesh.tets) std::swap(t[0], t[1]);
+  return mesh;
+}
+
+TEST(PointMerging, KeepsFlatSurfacesPatchesAndSheets) {
+  const TetMesh before = two_materials();
+  ASSERT_FALSE(sheets_of(before).empty());
+  const std::optional<TetMesh> after =
+      merged(before, {.max_distance = unbounded, .max_deviation = unbounded});
+  ASSERT_TRUE(after);
+  EXPECT_LT(2 * after->tets.size(), before.tets.size());
+  EXPECT_LT(4 * after->interfaces.size(), 3 * before.interfaces.size());
+  EXPECT_EQ(sheets_of(*after).size(), sheets_of(before).size());
+  const std::map<MaterialTag, double> was = volumes(before), is = volumes(*after);
+  ASSERT_EQ(is.size(), 2);
+  for (const auto& [tag, volume] : was) EXPECT_NEAR(is.at(tag), volume, 1e-12 * volume);
+  const auto areas = patch_areas(before, {-3, 8}), new_areas = patch_areas(*after, {-3, 8});
+  ASSERT_EQ(new_areas.size(), 2);
+  for (const auto& [patch, area] : areas) EXPECT_NEAR(new_areas.at(patch), area, 1e-9 * area);
+}
+
+TEST(PointMerging, KeepsHandlesWhereverPointsMayMove) {
+  // Tubes and holes of few edges around: without the tests of topology they vanish or close.
+  for (const int across : {2, 3, 4})
+    for (const int around : {5, 8, 12})
+      for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+        PointMerging options = lax;
+        options.seed = seed;
+        merged(torus(around, across), options);
+      }
+}
+
+TEST(PointMerging, BoundsDeviationAndLengths) {
+  const TetMesh before = torus(40, 8);
+  constexpr double deviation = 0.1, distance = 2;
+  const std::optional<TetMesh> after =
+      merged(before, {.max_distance = distance, .max_deviation = deviation, .min_smooth_cosine = 0.5});
+  ASSERT_TRUE(after);
+  EXPECT_LT(3 * after->tets.size(), 2 * before.tets.size());
+  // Every face is near the plane of the surface around it: the torus, whose points are kept.
+  double farthest = 0, longest_moved = 0;
+  const TetMesh surface = *after;
+  for (const InterfaceTriangle& t : find_interfaces(surface)) {
+    Vec3 middle = Vec3::Zero();
+    for (int k = 0; k < 3; ++k) middle += surface.points[t.ids[k]] / 3;
+    const double ring = std::hypot(middle.x(), middle.y()) - 12, tube = std::hypot(ring, middle.z());
+    farthest = std::max(farthest, std::fabs(tube - 4));
+    for (int k = 0; k < 3; ++k)
+      longest_moved =
+          std::max(longest_moved, (surface.points[t.ids[k]] - surface.points[t.ids[(k + 1) % 3]]).norm());
+  }
+  EXPECT_LT(farthest, 4 * deviation);
+  double longest_before = 0;
+  for (const InterfaceTriangle& t : find_interfaces(before))
+    for (int k = 0; k < 3; ++k)
+      longest_before =
+          std::max(longest_before, (before.points[t.ids[k]] - before.points[t.ids[(k + 1) % 3]]).norm());
+  EXPECT_LE(longest_moved, std::max(distance, longest_before));
+}
+
+TEST(PointMerging, KeepsSurfacesApart) {
+  // Two bodies whose wavy surfaces are much closer to each other than new faces are to the old ones.
+  constexpr int n = 24, half = 4;
+  TetMesh mesh = grid_mesh({n, n, 2 * half + 1}, [](int, int, int z) -> std::optional<MaterialTag> {
+    if (z == half) return std::nullopt;
+    return 1;
+  });
+  for (Vec3& at : mesh.points) {
+    const double wave = 0.6 * std::sin(at.x()) * std::sin(at.y());
+    if (at.z() > half)
+      at.z() += wave * (2 * half + 1 - at.z()) / half - 0.99;
+    else
+      at.z() += wave * at.z() / half;
+  }
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    PointMerging options = lax;
+    options.seed = seed;
+    const std::optional<TetMesh> after = merged(mesh, options);
+    ASSERT_TRUE(after);
+    EXPECT_LT(after->tets.size(), mesh.tets.size());
+  }
+}
+
+TEST(PointMerging, IsTheSameForAnyNumberOfThreads) {
+  // Enough tets for several parts of each loop.
+  const TetMesh mesh = grid_mesh(24);
+  std::optional<TetMesh> one, three;
+  PointMerging options = lax;
+  options.seed = 7;
+  with_threads(1, [&] { one = merged(mesh, options); });
+  with_threads(3, [&] { three = merged(mesh, options); });
+  ASSERT_TRUE(one && three);
+  EXPECT_LT(3 * one->tets.size(), mesh.tets.size());
+  EXPECT_EQ(one->tets, three->tets);
+  EXPECT_EQ(one->points, three->points);
+}
+
+TEST(PointMerging, MovesNoPointFartherThanAllowed) {
+  const TetMesh mesh = grid_mesh(6);
+  PointMerging options = lax;
+  options.max_distance = 0.9;
+  EXPECT_EQ(merged(mesh, options)->tets.size(), mesh.tets.size());
+  options.max_distance = 1.1;
+  EXPECT_LT(merged(mesh, options)->tets.size(), mesh.tets.size());
+}
+
+TEST(PointMerging, LeavesMeshesWithNegativeTetsAlone) {
+  TetMesh mesh = grid_mesh(6);
+  std::swap(mesh.points[100], mesh.points[101]);
+  EXPECT_FALSE(merged(mesh, lax));
+}
+
+TEST(PointMerging, LeavesFrozenPointsAlone) {
+  const TetMesh mesh = grid_mesh(8);
+  EditableMesh editable{TetMesh(mesh), "test"};
+  editable.freeze(std::vector<std::uint8_t>(mesh.points.size(), 1));
+  ASSERT_TRUE(merge_points(editable, lax));
+  EXPECT_EQ(editable.live_tets(), mesh.tets.size());
+}
+
+TEST(PointMerging, IsNotUsedWhereSurfacesIntersect) {
+  SimplifyOptions options;
+  options.target_tets = 2000;
+  options.max_iterations = 1;
+  const TetMesh body = grid_mesh(20);
+  SimplifyReport report;
+  simplify(body, options, &report);
+  EXPECT_LT(report.iterations.front().tets_before, body.tets.size());
+  // Two of these, one inside the other in part. All tets are positive.
+  TetMesh mesh = body;
+  for (const Vec3& p : body.points) mesh.points.push_back(p + Vec3(10.5, 0.25, 0.25));
+  for (Tet t : body.tets) {
+    for (Index& p : t) p += static_cast<Index>(body.points.size());
+    mesh.tets.push_back(t);
+    mesh.materials.push_back(1);
+  }
+  report = {};
+  simplify(mesh, options, &report);
+  EXPECT_EQ(report.iterations.front().tets_before, mesh.tets.size());
+}
+
+}  // namespace
+}  // namespace tetwright::point_merging_test
