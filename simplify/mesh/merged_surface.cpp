@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// Whether the surface keeps its topology, and does not meet itself, when points are merged.
+// Whether the surface keeps its topology and volumes, and does not meet itself, when points are merged.
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <utility>
 
 #include "common/geometry/self_intersection.h"
@@ -16,6 +17,7 @@ namespace tetwright {
 namespace {
 
 using Grains = SimplifyTuning::Grains;
+using Merging = SimplifyTuning::Merging;
 
 /// An edge of a triangle of the new surface, from face `face` of the old one.
 struct EdgeUse {
@@ -104,6 +106,49 @@ bool PointMerger::edges_are_kept() {
 }
 
 bool PointMerger::topology_is_kept() { return clusters_are_contractible() && edges_are_kept(); }
+
+bool PointMerger::volumes_are_kept() {
+  // Six times the volumes before and after, as sums over the faces, in parts of fixed size.
+  struct Volumes {
+    std::vector<double> before, after;
+  };
+  const std::size_t regions = mesh_.region_count();
+  std::vector<Volumes> parts((faces_.size() + Grains::slots - 1) / Grains::slots);
+  parallel_for(0, faces_.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
+    auto& [before, after] = parts[begin / Grains::slots];
+    before.assign(regions, 0);
+    after.assign(regions, 0);
+    const auto below = [&](const Triangle& t) {
+      return mesh_.position(t[0]).dot(mesh_.position(t[1]).cross(mesh_.position(t[2])));
+    };
+    for (std::size_t i = begin; i < end; ++i) {
+      const InterfaceFace& f = faces_[i];
+      const double was = below(f.ids), is = below(image(f.ids));
+      before[f.inside] += was;
+      after[f.inside] += is;
+      if (f.across == outside_id) continue;
+      before[f.across] -= was;
+      after[f.across] -= is;
+    }
+  });
+  std::vector<std::uint8_t> changed(regions, 0);
+  for (std::size_t r = 0; r < regions; ++r) {
+    double before = 0, after = 0;
+    for (const Volumes& part : parts) {
+      before += part.before[r];
+      after += part.after[r];
+    }
+    changed[r] = std::fabs(after - before) > Merging::max_volume_change * std::fabs(before);
+  }
+  if (std::none_of(changed.begin(), changed.end(), [](std::uint8_t c) { return c != 0; })) return true;
+  // Half of the points at a time, in the end all.
+  const int pass = volume_passes_++;
+  for (const InterfaceFace& f : faces_)
+    if (changed[f.inside] || (f.across != outside_id && changed[f.across]))
+      for (const Index p : f.ids)
+        if (pass >= Merging::max_volume_passes || (keys_[p] >> pass & 1u) != 0) undo(p);
+  return false;
+}
 
 bool PointMerger::surface_is_embedded() {
   // Touching points have one number, as triangles that share a point may touch there.

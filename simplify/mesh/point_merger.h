@@ -98,6 +98,8 @@ class PointMerger {
   bool topology_is_kept();
   bool clusters_are_contractible();
   bool edges_are_kept();
+  /// Undoes the moves of points of regions whose volume changes too much. False if there were such moves.
+  bool volumes_are_kept();
   /// Undoes the moves that make the surface of all materials meet itself. False if there were such moves.
   bool surface_is_embedded();
 
@@ -113,6 +115,7 @@ class PointMerger {
   std::vector<std::uint8_t> changes_;  ///< by point: the number of its targets so far
   std::vector<Index> smooth_, inner_;  ///< points that may move, ascending
   std::vector<Index> changed_;         ///< surface points with other moves since the last check of tets
+  int volume_passes_ = 0;              ///< calls of volumes_are_kept() that found changes
   bool intersects_ = false;            ///< the mesh's own surface meets itself
 };
 

@@ -277,7 +277,6 @@ void PointMerger::repair_tets(const std::optional<std::vector<Index>>& points) {
 }
 
 bool PointMerger::run() {
-  // Tets at a point are numbered 4 * tet + vertex in 32 bits, as are faces.
   if (!mesh_.all_positive()) return false;
   targets_.resize(mesh_.point_slots());
   std::iota(targets_.begin(), targets_.end(), Index{0});
@@ -292,7 +291,7 @@ bool PointMerger::run() {
   list_stars();
   merge(smooth_);
   do repair_faces();
-  while (!topology_is_kept());
+  while (!topology_is_kept() || !volumes_are_kept());
   merge(inner_);
   changed_.clear();
   repair_tets({});
@@ -300,7 +299,7 @@ bool PointMerger::run() {
   do {
     while (!changed_.empty()) {
       do repair_faces();
-      while (!topology_is_kept());
+      while (!topology_is_kept() || !volumes_are_kept());
       std::vector<Index> changed;
       changed.swap(changed_);
       repair_tets(std::move(changed));

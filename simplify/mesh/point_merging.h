@@ -34,13 +34,13 @@ struct PointMerging {
 ///   point as often as the boundary winds around it, so once if it is inside: tets do not overlap, interfaces
 ///   do not meet, and neighbours across a face remain neighbours.
 ///
-/// Moves that violate this are undone. Parallel; the result does not depend on the number of threads.
+/// Moves that violate this are undone, and those of a region whose volume would change by more than
+/// Merging::max_volume_change. Parallel; the result does not depend on the number of threads.
 /// Links, incident tets and patches are set anew; points that moved are dead, and all other points keep their
 /// numbers and positions.
 ///
-/// \return false if nothing was changed, since a tet is not positive (exact sign), surfaces intersect, or
-///   there are too many tets
-/// \pre no operation has run
+/// \return false if nothing was changed, since a tet is not positive (exact sign) or the boundary meets
+/// itself \pre no operation has run
 bool merge_points(EditableMesh& mesh, const PointMerging& options);
 
 }  // namespace tetwright

@@ -68,6 +68,10 @@ struct SimplifyTuning {
     /// Min ratio of a tet's determinant to the cube of its longest edge; 0.71 for a regular tet. Far above
     /// rounding errors, so the sign is exact. With 0.05 shapes are the same and more points stay.
     static constexpr double min_tet_shape = 0.02;
+    /// Max change of a region's volume, as a fraction: half of Volumes::max_change.
+    static constexpr double max_volume_change = 0.004;
+    /// Number of times that half of the moves of such a region are undone, before all are.
+    static constexpr int max_volume_passes = 3;
     /// Max number of times that a point moves onto another neighbour before it stays; 4 is no better.
     static constexpr int max_changes = 2;
   };

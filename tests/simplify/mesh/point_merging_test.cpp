@@ -204,6 +204,23 @@ TEST(PointMerging, KeepsSurfacesApart) {
   }
 }
 
+TEST(PointMerging, KeepsVolumes) {
+  // A small region within a large one: its volume must be kept, too.
+  TetMesh mesh = torus(24, 12);
+  for (std::size_t i = 0; i < mesh.tets.size(); ++i) {
+    Vec3 middle = Vec3::Zero();
+    for (const Index p : mesh.tets[i]) middle += mesh.points[p] / 4;
+    const double ring = std::hypot(middle.x(), middle.y()) - 18;
+    mesh.materials[i] = ring * ring + middle.z() * middle.z() < 9 && middle.x() > 0 ? 2 : 1;
+  }
+  const std::optional<TetMesh> after = merged(mesh, lax);
+  ASSERT_TRUE(after);
+  EXPECT_LT(after->tets.size(), mesh.tets.size());
+  const std::map<MaterialTag, double> was = volumes(mesh), is = volumes(*after);
+  for (const auto& [tag, volume] : was)
+    EXPECT_NEAR(is.at(tag), volume, SimplifyTuning::Merging::max_volume_change * volume);
+}
+
 TEST(PointMerging, IsTheSameForAnyNumberOfThreads) {
   // Enough tets for several parts of each loop.
   const TetMesh mesh = grid_mesh(24);
