@@ -9,6 +9,7 @@
 #include "simplify/constraints/surface_projection.h"
 #include "simplify/schedule/block_runner.h"
 #include "simplify/schedule/input_samples.h"
+#include "simplify/schedule/refused_stars.h"
 #include "simplify/schedule/round_recorder.h"
 
 namespace tetwright {
@@ -44,6 +45,9 @@ class Engine {
   const VolumeLedger& ledger() const { return constrained_.ledger; }
   RoundRecorder& recorder() { return recorder_; }
   InputSamples& input_samples() { return samples_; }
+  /// The points that fit their samples: fit_to_samples() found no step worth a move.
+  /// \pre compact() has been called.
+  RefusedStars& fitted() { return *fitted_; }
   BlockRules rules;
 
   /// Compacts the mesh, leaves free slots for operations that add elements, and rebuilds the grid. Every
@@ -80,6 +84,7 @@ class Engine {
   SurfaceProjection projection_;
   InputSamples samples_;
   std::optional<EdgeSizes> sizes_;
+  std::optional<RefusedStars> fitted_;
   BlockRunner runner_;
   RoundRecorder recorder_;
   const Progress* progress_;  ///< may be null
