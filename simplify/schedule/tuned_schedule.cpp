@@ -43,8 +43,12 @@ void flip_and_smooth_block(Engine& engine, float limit) {
       [&](Workspace& ws, const TetSnapshot& item, int) {
         // A neighbour's operation may have improved the tet since it was listed.
         if (!exists(mesh, item) || mesh.quality(item.tet) > limit) return Outcome::stale;
-        for (int f = 0; f < 4; ++f)
+        for (int f = 0; f < 4; ++f) {
+          // The worse of both tets tries the same.
+          const Index other = mesh.neighbour(item.tet, f);
+          if (other != no_index && mesh.quality(other) < mesh.quality(item.tet)) continue;
           if (remove_face(ws, rules, item.tet, f, basic_reach) == Outcome::done) return Outcome::done;
+        }
         for (int e = 0; e < 6; ++e)
           if (remove_edge(ws, rules, item.tet, e, basic_reach) == Outcome::done) return Outcome::done;
         for (Index p : item.points) {
