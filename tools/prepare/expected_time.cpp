@@ -11,9 +11,9 @@ namespace tetwright {
 namespace {
 
 /// CPU time with one thread, seconds: meshing and simplification of a dense tet, the last iterations and
-/// improvement for a wanted tet, and reading, smoothing and thickness of a voxel. Fitted to five volumes with
-/// 1.3 to 23 million dense tets, on which the sum is within a factor of 0.7 to 1.6.
-constexpr double per_dense_tet = 8e-6, per_target_tet = 130e-6, per_voxel = 0.15e-6;
+/// improvement for a wanted tet, and reading, smoothing and thickness of a voxel. Fitted to seven volumes
+/// with 0.5 to 23 million dense tets, on which the sum is within a factor of 0.6 to 1.7.
+constexpr double per_dense_tet = 8e-6, per_target_tet = 45e-6, per_voxel = 0.15e-6;
 /// Fraction of the time that more threads do not shorten: a volume of 41 labels took 44 s with one thread, 17
 /// with four and 12 with sixteen.
 constexpr double serial_share = 0.2;
