@@ -283,7 +283,7 @@ void compact(const LabelledLattice& lattice, const std::vector<Vec3>& cuts, CutM
 
 }  // namespace
 
-double worst_piece_tangent(const LabelledLattice& lattice, const Tet& t) {
+double worst_piece_tangent(const LabelledLattice& lattice, const Tet& t, double enough) {
   constexpr double none = 1;  // the min solid angle of a tet is never as large as pi / 2
   const auto angle = [](const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
     return min_solid_angle_tangent(a, b, c, d);
@@ -321,6 +321,7 @@ double worst_piece_tangent(const LabelledLattice& lattice, const Tet& t) {
     if (pieces[p].region == outside_region && !lattice.keep_outside) continue;
     const auto& v = pieces[p].vertices;
     worst = std::min(worst, angle(place(v[0]), place(v[1]), place(v[2]), place(v[3])));
+    if (worst <= enough) break;
   }
   return worst;
 }

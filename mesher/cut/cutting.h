@@ -18,8 +18,9 @@ struct CutMesh {
 
 /// The smallest solid angle among the pieces of a tet that become part of the mesh, as the tangent of half
 /// the angle. Returns 1, which no tet reaches, if there is no such piece.
+/// \param enough pieces that are at least this bad end the search: the result may then be that of any of them
 /// \pre the tet has a point near an interface
-double worst_piece_tangent(const LabelledLattice& lattice, const Tet& tet);
+double worst_piece_tangent(const LabelledLattice& lattice, const Tet& tet, double enough = 0);
 
 /// Cuts the lattice along its interfaces; tets outside are dropped unless the lattice keeps the outside.
 ///

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "mesher/lattice/labelled_lattice.h"
@@ -91,15 +93,20 @@ class IndependentRounds {
  private:
   static constexpr std::uint32_t free_ = ~std::uint32_t{0};
 
-  /// The slots of the points in the closed stars of `points`, without repetitions.
+  /// The slots of the points in the closed stars of `points`, with few repetitions.
   std::vector<Index> slots_around(std::span<const Index> points) const {
     std::vector<Index> slots;
+    // Most points are in many of the tets. A small table of those seen last drops nearly all repetitions;
+    // others do no harm.
+    std::array<Index, CutTuning::Rounds::seen_slots> seen;
+    seen.fill(no_index);
     for (Index p : points)
       for (Index t : lattice_.stars.tets(p))
         for (Index q : lattice_.tets[t])
-          if (const Index s = lattice_.stars.slot(q); s != no_index) slots.push_back(s);
-    std::sort(slots.begin(), slots.end());
-    return {slots.begin(), std::unique(slots.begin(), slots.end())};
+          if (const Index s = lattice_.stars.slot(q);
+              s != no_index && std::exchange(seen[s % seen.size()], s) != s)
+            slots.push_back(s);
+    return slots;
   }
 
   const LabelledLattice& lattice_;

@@ -12,6 +12,7 @@
 #include "common/tolerances.h"
 #include "mesher/cut/cutting.h"
 #include "mesher/cut/independent_rounds.h"
+#include "mesher/cut/last_tries.h"
 #include "mesher/cut/link_topology.h"
 #include "mesher/tuning/cut_tuning.h"
 #include "tetwright/mesh_quality.h"
@@ -107,9 +108,7 @@ class Mover {
                                   }).size();
     std::vector<Candidate>().swap(candidates_);
     std::vector<Index>().swap(by_rank_);
-    std::vector<Index> tets = improve_worst_stars(lattice_.tets.size(), [](std::size_t i) { return i; });
-    for (int sweep = 1; sweep < Snapping::sweeps && !tets.empty(); ++sweep)
-      tets = improve_worst_stars(tets.size(), [&](std::size_t i) { return tets[i]; });
+    improve_worst_stars();
     return counts;
   }
 
@@ -306,9 +305,18 @@ class Mover {
     return false;
   }
 
-  double worst_piece(Index p) const {
-    double worst = 1;
-    for (Index t : star(p)) worst = std::min(worst, worst_piece_tangent(lattice_, lattice_.tets[t]));
+  struct WorstPiece {
+    double tangent;
+    Index tet;
+  };
+  /// The worst piece of the star of a point; nothing if it is not better than `best`.
+  std::optional<WorstPiece> worst_piece(Index p, double best) const {
+    WorstPiece worst{1, *star(p).begin()};
+    for (Index t : star(p)) {
+      const double tangent = worst_piece_tangent(lattice_, lattice_.tets[t], best);
+      if (!(tangent > best)) return std::nullopt;
+      if (tangent < worst.tangent) worst = {tangent, t};
+    }
     return worst;
   }
 
@@ -321,20 +329,24 @@ class Mover {
     Vec3 best_place = from;
     const std::span<float> values = lattice_.star_values(p);
     std::vector<float> best_values(values.begin(), values.end());
-    double best = worst_piece(p);
+    constexpr double any = -1;
+    WorstPiece best = *worst_piece(p, any);
     for (const Vec3& place : places) {
       if (!on) {
         const NearestRegion there = sampler.nearest(place);
         if (there.region != lattice_.first_region[p] || there.margin >= field_.band()) continue;
       }
-      if (!star_is_good(p, place)) continue;
       lattice_.positions[p] = place;
       if (!on) sampler.values(place, lattice_.star_regions(p), values.data());
-      if (const double worst = worst_piece(p); worst > best) {
-        best = worst;
-        best_place = place;
-        best_values.assign(values.begin(), values.end());
-      }
+      // Most positions are refused because of the tet that was the worst.
+      if (!(worst_piece_tangent(lattice_, lattice_.tets[best.tet], best.tangent) > best.tangent) ||
+          !star_is_good(p, place))
+        continue;
+      const std::optional<WorstPiece> worst = worst_piece(p, best.tangent);
+      if (!worst) continue;
+      best = *worst;
+      best_place = place;
+      best_values.assign(values.begin(), values.end());
     }
     lattice_.positions[p] = best_place;
     std::copy(best_values.begin(), best_values.end(), values.begin());
@@ -358,40 +370,74 @@ class Mover {
     return move_to_best(p, places, sampler);
   }
 
-  /// Finds the tets with a piece below the limit among `count` tets with the numbers `tet(i)`, and moves
-  /// their points near interfaces: points on an interface stay on it, the others keep their region. Returns
-  /// the tets whose pieces may have changed.
-  template <class TetOf>
-  std::vector<Index> improve_worst_stars(std::size_t count, TetOf&& tet) {
-    std::vector<Index> points = parallel_collect<Index>(
-        0, count, CutGrains::stars, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
-          const auto near = [&](Index v) { return lattice_.stars.lists(v); };
-          for (std::size_t i = begin; i < end; ++i) {
-            const Tet& t = lattice_.tets[tet(i)];
-            if (std::none_of(t.begin(), t.end(), near) ||
-                worst_piece_tangent(lattice_, t) >= CutTuning::Shapes::tangent_of_bad_tet)
-              continue;
-            std::copy_if(t.begin(), t.end(), std::back_inserter(out), near);
-          }
-        });
-    parallel_sort_unique(points);
-    const std::vector<std::size_t> starts = scatter_groups(points, one_priority);
-    run_groups(points, starts,
-               [&](std::size_t k, FieldSampler& sampler) { improve_star(points[k], sampler); });
-    std::vector<Index> touched;
-    for (Index p : points)
-      for (Index t : star(p)) touched.push_back(t);
-    parallel_sort_unique(touched);
-    return touched;
+  bool is_bad(const Tet& t) const {
+    return std::any_of(t.begin(), t.end(), [&](Index v) { return lattice_.stars.lists(v); }) &&
+           worst_piece_tangent(lattice_, t) < CutTuning::Shapes::tangent_of_bad_tet;
   }
 
-  void improve_star(Index p, FieldSampler& sampler) {
-    if (!lattice_.is_on[p] && is_certain(p)) return;
+  /// The numbers `tet(i)`, i < count, of tets with a piece below the limit, in this order.
+  template <class TetOf>
+  std::vector<Index> bad_tets(std::size_t count, TetOf&& tet) const {
+    return parallel_collect<Index>(
+        0, count, CutGrains::stars, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+          for (std::size_t i = begin; i < end; ++i)
+            if (const auto t = static_cast<Index>(tet(i)); is_bad(lattice_.tets[t])) out.push_back(t);
+        });
+  }
+
+  /// Moves the points near interfaces of tets with a piece below the limit: points on an interface stay on
+  /// it, the others keep their region.
+  void improve_worst_stars() {
+    std::vector<Index> bad = bad_tets(lattice_.tets.size(), [](std::size_t i) { return i; });
+    LastTries tries(lattice_.stars.points().size());
+    for (int sweep = 0; sweep < Snapping::sweeps && !bad.empty(); ++sweep) {
+      std::vector<Index> points;
+      for (Index t : bad)
+        for (Index v : lattice_.tets[t])
+          if (lattice_.stars.lists(v)) points.push_back(v);
+      parallel_sort_unique(points);
+      const std::vector<std::size_t> starts = scatter_groups(points, one_priority);
+      std::vector<std::uint8_t> moved(points.size(), 0);
+      run_groups(points, starts, [&](std::size_t k, FieldSampler& sampler) {
+        const Index p = points[k];
+        if (nothing_new(p, tries)) return;
+        moved[k] = improve_star(p, sampler);
+        tries.record(lattice_.stars.slot(p), k, moved[k]);
+      });
+      tries.end_sweep(points.size());
+      // Pieces of all other tets are what they were.
+      std::vector<Index> changed;
+      for (std::size_t k = 0; k < points.size(); ++k)
+        if (moved[k]) changed.insert(changed.end(), star(points[k]).begin(), star(points[k]).end());
+      parallel_sort_unique(changed);
+      std::vector<Index> unchanged, left;
+      std::set_difference(bad.begin(), bad.end(), changed.begin(), changed.end(),
+                          std::back_inserter(unchanged));
+      changed = bad_tets(changed.size(), [&](std::size_t i) { return changed[i]; });
+      std::merge(unchanged.begin(), unchanged.end(), changed.begin(), changed.end(),
+                 std::back_inserter(left));
+      bad.swap(left);
+    }
+  }
+
+  /// Whether another try would only repeat the last one: it reads the closed star, where no point has moved.
+  bool nothing_new(Index p, const LastTries& tries) const {
+    const Index slot = lattice_.stars.slot(p);
+    if (!tries.tried(slot)) return false;
+    for (Index t : star(p))
+      for (Index q : lattice_.tets[t])
+        if (const Index s = lattice_.stars.slot(q); s != no_index && tries.moved_since(s, slot)) return false;
+    return true;
+  }
+
+  /// Returns true if the point was moved.
+  bool improve_star(Index p, FieldSampler& sampler) {
+    if (!lattice_.is_on[p] && is_certain(p)) return false;
     std::vector<Vec3> places;
     const Vec3 from = lattice_.positions[p], to_middle = without_held(p, middle_of_star(p) - from);
     if (lattice_.is_on[p]) {
       const std::optional<RegionSet> regions = pure_regions(lattice_, p);
-      if (!regions) return;
+      if (!regions) return false;
       for (double share : Snapping::steps_on_interface) {
         Vec3 place = from + share * to_middle;
         if (sampler.project(*regions, place, held_axes(p))) places.push_back(place);
@@ -405,7 +451,7 @@ class Mover {
                                             std::max(tolerance::min_squared_slope, gradient.squaredNorm())));
       places.push_back(from + Snapping::step_to_middle * to_middle);
     }
-    move_to_best(p, places, sampler);
+    return move_to_best(p, places, sampler);
   }
 
   /// The region of the smallest distance among the other regions of the star; on_interface if there is none.

@@ -94,12 +94,26 @@ std::vector<LatticeEdge> lattice_edges() {
   return edges;
 }
 
+/// The ends and midpoints of edges, each once.
+std::vector<Quarters> points_of(const std::vector<LatticeEdge>& edges) {
+  std::vector<Quarters> points;
+  for (const LatticeEdge& e : edges) points.insert(points.end(), {e.a, e.b, e.middle()});
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
+}
+
 /// The lattice of cells of one size, with the regions at its points and the midpoints of its edges.
 class CellTest {
  public:
   /// \param depth cells have an edge of 2^-depth
-  CellTest(const MaterialField& field, int depth, const std::vector<LatticeEdge>& edges)
-      : sampler_(field.sampler()), edges_(edges), unit_(std::ldexp(1.0 / cell_side, -depth)) {
+  /// \param edge_points points_of(edges)
+  CellTest(const MaterialField& field, int depth, const std::vector<LatticeEdge>& edges,
+           const std::vector<Quarters>& edge_points)
+      : sampler_(field.sampler()),
+        edges_(edges),
+        edge_points_(edge_points),
+        unit_(std::ldexp(1.0 / cell_side, -depth)) {
     for (int a = 0; a < 3; ++a) end_[a] = (field.voxels().box[a] << depth) * cell_side;
   }
 
@@ -108,9 +122,8 @@ class CellTest {
     points_.clear();
     for (const MortonKey cell : cells) {
       const Quarters low = low_of(cell);
-      for (const LatticeEdge& e : edges_)
-        for (const Quarters& at : {e.a, e.b, e.middle()})
-          if (const Quarters p = sum(low, at); in_box(p)) points_.push_back(morton_encode(p));
+      for (const Quarters& at : edge_points_)
+        if (const Quarters p = sum(low, at); in_box(p)) points_.push_back(morton_encode(p));
     }
     std::sort(points_.begin(), points_.end());
     points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
@@ -170,6 +183,7 @@ class CellTest {
 
   std::unique_ptr<FieldSampler> sampler_;
   const std::vector<LatticeEdge>& edges_;
+  const std::vector<Quarters>& edge_points_;
   std::vector<Face> faces_ = cell_faces();
   std::vector<Quarters> steps_ = lattice_steps();
   double unit_;  ///< a quarter cell, lattice units
@@ -183,6 +197,7 @@ class CellTest {
 void drop_redundant_cells(RefinementRegions& finer, const MaterialField& field, int exempt, double largest,
                           const Progress* progress) {
   const std::vector<LatticeEdge> edges = lattice_edges();
+  const std::vector<Quarters> edge_points = points_of(edges);
   const auto levels = static_cast<std::size_t>(finer.refinement) + 1;
   for (std::size_t level = static_cast<std::size_t>(exempt) + 1; level < levels; ++level) {
     if (std::ldexp(1.0, static_cast<int>(level) - finer.refinement) > largest) break;
@@ -192,7 +207,7 @@ void drop_redundant_cells(RefinementRegions& finer, const MaterialField& field, 
         0, cells.size(), LatticeGrains::tested_cells,
         [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
           const std::span<const MortonKey> range(cells.data() + begin, end - begin);
-          CellTest test(field, finer.refinement - static_cast<int>(level), edges);
+          CellTest test(field, finer.refinement - static_cast<int>(level), edges, edge_points);
           test.read(range);
           for (const MortonKey cell : range)
             if (test.shows_more(cell)) out.push_back(cell);

@@ -55,6 +55,8 @@ struct CutTuning {
     /// loop, few enough that most of them do not share points.
     static constexpr std::size_t min_groups = 128, wanted = 48;
     static constexpr std::size_t grain = 4;  ///< groups that a thread processes at a time
+    /// Entries of the table that drops repeated points of a group: twice as many as a group has, as a rule.
+    static constexpr std::size_t seen_slots = 1024;
   };
 
   /// Min distances of cuts from corners, so that pieces are well shaped: larger ones give better shapes and

@@ -9,10 +9,15 @@
 namespace tetwright {
 
 void fit_interfaces(Engine& engine, float floor, double above) {
-  const std::vector<Index> points = interface_points(
+  RefusedStars& fitted = engine.fitted();
+  std::vector<Index> points = interface_points(
       engine.mesh(), [&](RegionId region) { return engine.ledger().utilization(region) > above; });
-  engine.runner().each_star(points, Operation::fit,
-                            [&](Workspace& ws) { return fit_to_samples(ws, engine.rules, floor); });
+  std::erase_if(points, [&](Index p) { return fitted.holds(p); });
+  engine.runner().each_star(points, Operation::fit, [&](Workspace& ws) {
+    const Outcome o = fit_to_samples(ws, engine.rules, floor);
+    if (o == Outcome::no_candidate) fitted.add(ws.star.centre);
+    return o;
+  });
 }
 
 void fit_farthest_samples(Engine& engine, const std::vector<TetSnapshot>& tets, float floor) {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tools/app/log_file.h"
+#include "tools/app/printed_report.h"
 
 namespace tetwright {
 
@@ -19,6 +20,13 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
 }
 
 }  // namespace
+
+void ProgressReport::announce(const std::string& line) {
+  log_line(line);
+  if (quiet_ || style_ == ProgressStyle::json) return;
+  clear();
+  print_line(line);
+}
 
 void ProgressReport::begin_stage(std::string_view name) {
   stage_ = name;

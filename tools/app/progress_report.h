@@ -13,8 +13,11 @@ namespace tetwright {
 /// JSON, one for each stage and percent. Logs the stages. The destructor erases the bar.
 class ProgressReport : public Progress {
  public:
-  explicit ProgressReport(ProgressStyle style) : style_(style) {}
+  /// \param quiet announcements are only logged
+  explicit ProgressReport(ProgressStyle style, bool quiet) : style_(style), quiet_(quiet) {}
   ~ProgressReport() override { clear(); }
+  /// Prints the line, unless all of stderr is JSON.
+  void announce(const std::string& line) override;
   void begin_stage(std::string_view name) override;
   void update(double fraction) override;
   void finish() override;
@@ -28,6 +31,7 @@ class ProgressReport : public Progress {
   void clear();
 
   ProgressStyle style_;
+  bool quiet_;
   std::string stage_;
   Clock::time_point start_ = Clock::now(), stage_start_{}, last_drawn_{};
   int last_percent_ = 0;

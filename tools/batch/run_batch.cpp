@@ -128,7 +128,7 @@ Ended run_job(const Job& job, unsigned threads, double memory) {
     CommandLine line = parse(job);
     if (line.options.limits.threads == 0) line.options.limits.threads = threads;
     check_stats_path(line);
-    ProgressReport progress(ProgressStyle::none);  // keeps the stage for messages and the log
+    ProgressReport progress(ProgressStyle::none, true);  // keeps the stage for messages and the log
     with_threads(line.options.limits.threads, [&] {
       const MemoryLimit share(memory);
       CommandRun run(line, progress);

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tetwright/prepare_steps.h"
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
+#include <thread>
 #include <utility>
 
 #include "mesher/mesh_estimate.h"
 #include "tetwright/error.h"
 #include "tetwright/resources.h"
 #include "tools/prepare/edge_sizes_input.h"
+#include "tools/prepare/expected_time.h"
 
 namespace tetwright {
 
@@ -30,28 +34,32 @@ MesherOptions common_options(const PrepareRun& run) {
   return options;
 }
 
-/// Enlarges cells whose size was not requested until the estimated memory is available.
+/// Enlarges cells whose size was not requested until the estimated memory is available. Returns the estimate.
 template <class Scan>
-void fit_memory(const Scan& input, MesherOptions& options, PrepareRun& run) {
+MesherEstimate fit_memory(const Scan& input, MesherOptions& options, PrepareRun& run) {
   constexpr double growth = 1.25;
   constexpr double estimate_margin = 1.25;      // most estimates are within this factor
   constexpr double min_fitted_resolution = 16;  // a body is not recognisable with fewer cells
   const double available = available_memory() / estimate_margin;
   const MesherEstimate wanted = estimate_mesh(input, options);
-  if (static_cast<double>(wanted.bytes) <= available) return;
+  if (static_cast<double>(wanted.bytes) <= available) return wanted;
   const auto cell = [&](const MesherOptions& o) {
     return o.voxel_size > 0 ? o.voxel_size : longest_side(input) / o.resolution;
   };
   MesherOptions larger = options;
+  MesherEstimate estimate;
   do {
     if (options.voxel_size > 0)
       larger.voxel_size *= growth;
     else
       larger.resolution = static_cast<int>(larger.resolution / growth);
-    if (longest_side(input) / cell(larger) < min_fitted_resolution) return;  // rejected later, with numbers
-  } while (static_cast<double>(estimate_mesh(input, larger).bytes) > available);
+    if (longest_side(input) / cell(larger) < min_fitted_resolution)
+      return wanted;  // rejected later, with numbers
+    estimate = estimate_mesh(input, larger);
+  } while (static_cast<double>(estimate.bytes) > available);
   run.report.coarser = {cell(options), cell(larger), static_cast<double>(wanted.bytes)};
   options = larger;
+  return estimate;
 }
 
 DenseMesh mesh_input(const MesherInput& surfaces, PrepareRun& run) {
@@ -102,11 +110,19 @@ DenseMesh mesh_input(const LabelInput& labels, PrepareRun& run) {
   const CellOptions& cells = run.options.cells;
   const TargetOptions& target = run.options.target;
   MesherOptions options = common_options(run);
+  std::optional<MesherEstimate> estimate;
   if (!cells.resolution && !cells.size) {
     options.voxel_size = run.task == Task::prepare && target.tets
                              ? cell_size_for_target(labels, *target.tets, options)
                              : default_cell_size(labels);
-    fit_memory(labels, options, run);
+    estimate = fit_memory(labels, options, run);
+  }
+  if (run.task == Task::prepare) {
+    if (!estimate) estimate = estimate_mesh(labels, options);
+    run.progress.announce(
+        expected_time_line({static_cast<double>(estimate->tets), static_cast<double>(target.tets.value_or(0)),
+                            static_cast<double>(labels.voxel_count())},
+                           std::min(thread_count(), std::max(1u, std::thread::hardware_concurrency()))));
   }
   read_sizes(run, box_of(labels));
   if (target.tolerance && run.task == Task::mesh)

@@ -22,6 +22,8 @@ class Progress {
   Progress& operator=(const Progress&) = delete;
   virtual ~Progress() = default;
 
+  /// Tells the user something before work that may take long, one line.
+  virtual void announce(const std::string& /*line*/) {}
   /// Begins a stage of work, for example "signed distances".
   virtual void begin_stage(std::string_view /*name*/) {}
   /// Reports the fraction of the current stage that is done, 0 to 1.

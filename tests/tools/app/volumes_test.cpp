@@ -64,6 +64,23 @@ TEST_F(Volumes, NamesOfTheFileAreTaken) {
   EXPECT_NE(a.out.find("2 labels: 1 'outside_2', 2 'a'"), std::string::npos) << a.out;
 }
 
+TEST_F(Volumes, PrepareSaysFirstWhatItWillTake) {
+  const std::string small = write_small("small.nrrd", "uchar", cube, "\1\1\1\1\2\2\2\2");
+  const auto lines = [&](const std::string& command) {
+    const std::string expected = " dense tets, which take about ";
+    const std::string err = run(command + small + " --min-voxels 1 --resolution 8 -o " + path("out.vtu")).err;
+    std::size_t count = 0;
+    for (std::size_t at = err.find(expected); at != std::string::npos; at = err.find(expected, at + 1))
+      ++count;
+    if (count > 0) EXPECT_EQ(err.rfind("tetwright: about ", 0), 0u) << err;
+    return count;
+  };
+  EXPECT_EQ(lines("prepare --target-tets 200 "), 1u);
+  EXPECT_EQ(lines("prepare --target-tets 200 --quiet "), 0u);
+  EXPECT_EQ(lines("prepare --target-tets 200 --progress json "), 0u);
+  EXPECT_EQ(lines("mesh "), 0u);
+}
+
 TEST_F(Volumes, ReportAndStatistics) {
   const Answer a = run(mesh(path("organs.nrrd")) + coarse);
   ASSERT_EQ(a.status, 0) << a.err;

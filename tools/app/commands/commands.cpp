@@ -84,7 +84,7 @@ void report_failure(const std::exception& error, CommandRun& run) {
 
 ExitStatus run_command(const CommandLine& line) {
   check_stats_path(line);
-  ProgressReport progress(progress_style(line));
+  ProgressReport progress(progress_style(line), line.console.quiet);
   CommandRun run(line, progress);
   limit_process_memory(line);
   try {
