@@ -72,7 +72,8 @@ class Distortion {
     for (const Tet& t : tets_) {
       const Matrix3d j = edges(t) * from_regular_;
       const double determinant = j.determinant(), chi = regularised(determinant, epsilon);
-      const double root = portable_cbrt(chi), shape = j.squaredNorm() / (root * root);
+      const double per_root = portable_inverse_cbrt(chi), shrink = per_root * per_root;
+      const double shape = j.squaredNorm() * shrink;
       const double size = (1 + determinant * determinant) / chi;
       sum += shape + size;
       if (!gradient) continue;
@@ -83,7 +84,7 @@ class Distortion {
       const double chi_slope = (1 + determinant / length(epsilon, determinant)) / 2;
       const double slope =
           -2.0 / 3 * shape / chi * chi_slope + 2 * determinant / chi - size / chi * chi_slope;
-      const Matrix3d by_edges = (2 / (root * root) * j + slope * cofactor) * from_regular_.transpose();
+      const Matrix3d by_edges = (2 * shrink * j + slope * cofactor) * from_regular_.transpose();
       add(t[0], -by_edges.rowwise().sum(), *gradient);
       for (int k = 0; k < 3; ++k) add(t[k + 1], by_edges.col(k), *gradient);
     }
