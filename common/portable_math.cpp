@@ -81,7 +81,7 @@ double portable_cbrt(double x) {
 
 double portable_inverse_cbrt(double x) {
   const Parts p = split(x);
-  const int q = (p.exponent + 1200) / 3 - 400, r = p.exponent - 3 * q;  // exponent = 3 q + r, r in 0..2
+  const int q = (p.exponent + 1200) / 3 - 400, r = p.exponent - 3 * q;      // exponent = 3 q + r, r in 0..2
   constexpr double roots[3] = {1, 0.7937005259840998, 0.6299605249474366};  // 2^(-r/3)
   // A quadratic guess, within 0.0021, and steps of Newton's method without a division, which leave twice the
   // square of the error.
