@@ -79,6 +79,18 @@ double portable_cbrt(double x) {
   return std::copysign(std::ldexp(y, q) * scale, x);
 }
 
+double portable_inverse_cbrt(double x) {
+  const Parts p = split(x);
+  const int q = (p.exponent + 1200) / 3 - 400, r = p.exponent - 3 * q;      // exponent = 3 q + r, r in 0..2
+  constexpr double roots[3] = {1, 0.7937005259840998, 0.6299605249474366};  // 2^(-r/3)
+  // A quadratic guess, within 0.0021, and steps of Newton's method without a division, which leave twice the
+  // square of the error.
+  const double m = p.mantissa;
+  double y = 1.38350592 + m * (-0.47684206 + m * 0.09126117);
+  for (int i = 0; i < 3; ++i) y += y * (1 - m * y * y * y) * (1.0 / 3);
+  return y * roots[r] * std::bit_cast<double>(static_cast<std::uint64_t>(1023 - q) << 52);
+}
+
 double portable_log(double x) {
   Parts p = split(x);
   if (p.mantissa > std::numbers::sqrt2) {

@@ -13,6 +13,8 @@ double portable_atan(double x);
 double portable_atan2_upper(double y, double x);
 /// Cube root of any finite value.
 double portable_cbrt(double x);
+/// 1 / cbrt(x) of a finite normal x > 0, in a fifth of the time of the cube root.
+double portable_inverse_cbrt(double x);
 /// Natural logarithm of a finite normal x > 0.
 double portable_log(double x);
 

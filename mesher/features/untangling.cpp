@@ -3,6 +3,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <deque>
 
@@ -72,7 +73,8 @@ class Distortion {
     for (const Tet& t : tets_) {
       const Matrix3d j = edges(t) * from_regular_;
       const double determinant = j.determinant(), chi = regularised(determinant, epsilon);
-      const double root = portable_cbrt(chi), shape = j.squaredNorm() / (root * root);
+      const double per_root = portable_inverse_cbrt(chi), shrink = per_root * per_root;
+      const double shape = j.squaredNorm() * shrink;
       const double size = (1 + determinant * determinant) / chi;
       sum += shape + size;
       if (!gradient) continue;
@@ -83,7 +85,7 @@ class Distortion {
       const double chi_slope = (1 + determinant / length(epsilon, determinant)) / 2;
       const double slope =
           -2.0 / 3 * shape / chi * chi_slope + 2 * determinant / chi - size / chi * chi_slope;
-      const Matrix3d by_edges = (2 / (root * root) * j + slope * cofactor) * from_regular_.transpose();
+      const Matrix3d by_edges = (2 * shrink * j + slope * cofactor) * from_regular_.transpose();
       add(t[0], -by_edges.rowwise().sum(), *gradient);
       for (int k = 0; k < 3; ++k) add(t[k + 1], by_edges.col(k), *gradient);
     }
@@ -163,10 +165,16 @@ bool untangle(std::vector<Vec3>& points, std::span<const Tet> tets, std::span<co
   Distortion distortion(points, tets, freedom);
   if (!(distortion.size() > 0)) return false;
   double epsilon = 1;
+  std::array<double, Limits::max_rounds> min_determinants;  // by round, the smallest determinant
   for (int round = 0; round < Limits::max_rounds; ++round) {
     const double before = distortion.value(epsilon, nullptr), after = minimise(distortion, epsilon);
     const double least = distortion.min_determinant();
     if (least > Limits::min_determinant) return true;
+    min_determinants[static_cast<std::size_t>(round)] = least;
+    if (constexpr int span = Limits::trend_rounds; round >= span) {
+      const double gain = (least - min_determinants[static_cast<std::size_t>(round - span)]) / span;
+      if (least + Limits::max_speed_up * gain * (Limits::max_rounds - 1 - round) <= 0) return false;
+    }
     const double gain = std::max(1 - after / before, Limits::min_reduction);
     const double aim = (1 - gain) * Distortion::regularised(least, epsilon);
     epsilon = least < aim ? 2 * std::sqrt(aim * (aim - least)) : Limits::min_epsilon;

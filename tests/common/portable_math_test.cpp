@@ -51,6 +51,16 @@ TEST(PortableMath, CbrtAgreesWithLibm) {
   EXPECT_NEAR(portable_cbrt(tiny), std::cbrt(tiny), 1e-14 * std::cbrt(tiny));
 }
 
+TEST(PortableMath, InverseCbrtAgreesWithLibm) {
+  Random random(5);
+  for (int i = 0; i < 100000; ++i) {
+    const double x = std::fabs(spread(random, -1022, 1023));
+    EXPECT_NEAR(portable_inverse_cbrt(x), 1 / std::cbrt(x), 4e-15 / std::cbrt(x)) << x;
+  }
+  EXPECT_EQ(portable_inverse_cbrt(1), 1);
+  EXPECT_DOUBLE_EQ(portable_inverse_cbrt(8), 0.5);
+}
+
 TEST(PortableMath, LogAgreesWithLibm) {
   Random random(4);
   for (int i = 0; i < 100000; ++i) {

@@ -12,6 +12,7 @@
 #include "tetwright/resources.h"
 #include "tools/prepare/edge_sizes_input.h"
 #include "tools/prepare/expected_time.h"
+#include "tools/prepare/gap_opening.h"
 
 namespace tetwright {
 
@@ -78,9 +79,6 @@ DenseMesh mesh_input(const MesherInput& surfaces, PrepareRun& run) {
   options.min_thickness = in_input_units(cells.min_thickness, diagonal);
   const bool choose = !cells.resolution && !cells.size;
   const RequestedSizes& sizes = run.report.sizes;
-  // Tets that thin walls and gaps may add for each of the result, and bounds of their number. A gap of .01
-  // between boxes of size 1 stays open at 10,000 tets with some 3.5 million.
-  constexpr double thin_tets_share = 400, min_thin_tets = 2e6, max_thin_tets = 8e6;
   if (choose && target.tets && !cells.max_refinement)
     options.max_thin_tets =
         std::clamp(thin_tets_share * static_cast<double>(*target.tets), min_thin_tets, max_thin_tets);
@@ -89,7 +87,11 @@ DenseMesh mesh_input(const MesherInput& surfaces, PrepareRun& run) {
   if (choose && run.task == Task::prepare)
     choose_cells_for_sizes(surfaces, sizes.target_length.get(), sizes.limits.max_edge, options);
   if (choose) fit_memory(surfaces, options, run);
-  if (!target.tolerance) return mesh_surfaces(surfaces, options, &run.progress);
+  if (!target.tolerance) {
+    DenseMesh dense = mesh_surfaces(surfaces, options, &run.progress);
+    run.report.gap_opening = find_gap_opening(surfaces, dense.report, run.options);
+    return dense;
+  }
   run.report.tolerance = tolerance_of(*target.tolerance, diagonal);
   if (!choose) return mesh_surfaces(surfaces, options, &run.progress);
   if (!target.tets && !sizes.target_length && !std::isfinite(sizes.limits.max_edge)) options.resolution = 0;

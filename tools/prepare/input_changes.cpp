@@ -196,12 +196,19 @@ void find_thin_walls(PrepareRun& run) {
   }
   if (text.empty()) return;
   const bool finer = !options.cells.uniform && options.cells.max_refinement.value_or(0) < max_wall_refinement;
+  const GapOpening& opening = report.gap_opening;
+  const std::string opens =
+      opening.target_tets      ? " (" + std::to_string(*opening.target_tets) + " opens the gaps)"
+      : opening.max_refinement ? " (" + std::to_string(*opening.max_refinement) + " opens the gaps)"
+                               : "";
   report.diagnostics.push_back(
       {.code = DiagnosticCode::thin_walls_changed,
        .file = report.inputs.front(),
        .what = "too thin for cells: " + text,
-       .remedy = std::string("raise ") + (options.target.tets ? "--target-tets, " : "") + "--resolution" +
-                 (finer ? " or --max-refinement" : "") + ", or accept it with --accept-changes",
+       .remedy = std::string("raise ") + (options.target.tets ? "--target-tets" : "") +
+                 (opening.target_tets ? opens : "") + (options.target.tets ? ", " : "") + "--resolution" +
+                 (finer ? " or --max-refinement" : "") + (opening.max_refinement ? opens : "") +
+                 ", or accept it with --accept-changes",
        .asked = 0,
        .reached = static_cast<double>(report.mesher->closed_gaps.size() + t.points),
        .limited_by = "the size of the cells",

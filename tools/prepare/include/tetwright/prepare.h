@@ -301,6 +301,12 @@ struct RequestedSizes {
   bool any() const { return target_length || limits.min_edge > 0 || std::isfinite(limits.max_edge); }
 };
 
+/// The option that would open gaps closed by the size of cells; neither if none is known.
+struct GapOpening {
+  std::optional<std::size_t> target_tets;
+  std::optional<int> max_refinement;
+};
+
 /// Cells that were enlarged to fit into memory.
 struct CoarserCells {
   double asked, used;  ///< edges of the finest cells, input units
@@ -316,6 +322,7 @@ struct PrepareReport {
   std::vector<Diagnostic> diagnostics;  ///< findings and shortfalls
   std::optional<MesherReport> mesher;
   std::optional<CoarserCells> coarser;
+  GapOpening gap_opening;
   std::optional<MeshStatistics> dense, result;
   std::vector<ContactReport> contacts;  ///< of bodies that meet, by pair
   std::vector<OverlapReport> overlaps;  ///< of bodies that cross, by pair
