@@ -37,7 +37,7 @@ struct SimplifyTuning {
   struct Slots {
     /// Fraction of dead slots among used ones above which the mesh is compacted: trades the time of
     /// compaction for dense memory.
-    static constexpr double compact_above = 0.45;
+    static constexpr double compact_above = 0.3;
     /// Free slots left for operations that add elements: the inverse of their ratio to live slots, and their
     /// min number.
     static constexpr std::size_t spare_inverse = 16, min_spare = 4096;

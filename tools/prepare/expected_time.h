@@ -5,7 +5,7 @@
 
 namespace tetwright {
 
-/// What the time follows from.
+/// Sizes from which the time follows.
 struct ExpectedWork {
   double dense_tets = 0;   ///< predicted
   double target_tets = 0;  ///< 0: unknown
