@@ -6,13 +6,15 @@
 #include <numbers>
 
 #include "common/geometry/distance_tree.h"
-#include "common/geometry/predicates.h"
 #include "common/portable_math.h"
 #include "tetwright/resources.h"
 
 namespace tetwright {
 
 namespace {
+
+/// Slightly faster than 4 and 12 in benchmarks/mesher/surface_tree_benchmark.cpp.
+constexpr std::size_t triangles_in_leaf = 8;
 
 /// Distance in node radii beyond which the series is used. At 2 the error is up to 0.006, at 3 up to 0.001 in
 /// twice the time (surfaces of 200,000 triangles, points near them).
@@ -50,19 +52,12 @@ class AngleSum {
   std::uint32_t factors_ = 0;
 };
 
-/// Rounding of the product of three vectors with rounded components, as a share of the product of their
-/// lengths, with a margin; and a share that changes no sum but keeps its sign.
-constexpr double volume_rounding = 2e-15, smallest_volume = 1e-16;
-
-/// Adds half the solid angle that a triangle subtends at p, positive if p is exactly behind it and
-/// nothing if p is in its plane (van Oosterom & Strackee 1983, eq. 8).
+/// Adds half the solid angle that a triangle subtends at p, positive if p is behind it (van Oosterom &
+/// Strackee 1983, eq. 8).
 void add_half_solid_angle(const Vec3& ta, const Vec3& tb, const Vec3& tc, const Vec3& p, AngleSum& sum) {
   const Vec3 a = ta - p, b = tb - p, c = tc - p;
-  const double la = a.norm(), lb = b.norm(), lc = c.norm(), size = la * lb * lc;
-  double volume = a.dot(b.cross(c));
-  if (std::fabs(volume) <= volume_rounding * size)
-    volume = -orient3d(ta, tb, tc, p) * std::max(std::fabs(volume), smallest_volume * size);
-  sum.add(size + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb, volume);
+  const double la = a.norm(), lb = b.norm(), lc = c.norm();
+  sum.add(la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb, a.dot(b.cross(c)));
 }
 
 /// Coefficients of homogeneous polynomials: x, y, z; xx, xy, xz, yy, yz, zz; xxx, xxy, xxz, xyy, xyz, xzz,
@@ -150,8 +145,7 @@ double value(const Cubic& c, const Vec3& v) {
 
 }  // namespace
 
-SurfaceTree::SurfaceTree(std::span<const Vec3> points, std::span<const Triangle> triangles,
-                         std::size_t leaf_size) {
+SurfaceTree::SurfaceTree(std::span<const Vec3> points, std::span<const Triangle> triangles) {
   const std::size_t n = triangles.size();
   if (n == 0) return;
   scale_ = unit_scale(points, triangles);
@@ -165,8 +159,8 @@ SurfaceTree::SurfaceTree(std::span<const Vec3> points, std::span<const Triangle>
   std::vector<Box3> boxes(n);
   for (std::size_t t = 0; t < n; ++t)
     for (const Vec3& c : corners[t]) boxes[t].add(c);
-  const std::vector<Index> order = median_order(boxes, middles, leaf_size);
-  tree_ = BoxTree(n, leaf_size, [&](std::size_t i) { return boxes[order[i]]; });
+  const std::vector<Index> order = median_order(boxes, middles, triangles_in_leaf);
+  tree_ = BoxTree(n, triangles_in_leaf, [&](std::size_t i) { return boxes[order[i]]; });
   triangles_.resize(n);
   for (std::size_t i = 0; i < n; ++i) triangles_[i] = corners[order[i]];
   make_series();

@@ -18,15 +18,8 @@ namespace tetwright {
 /// the result does not depend on the number of threads. About 200 bytes for each triangle.
 class SurfaceTree {
  public:
-  /// Slightly faster than 4 and 12 in benchmarks/mesher/surface_tree_benchmark.cpp.
-  static constexpr std::size_t triangles_in_leaf = 8;
-
   /// Copies its input.
-  /// \param leaf_size triangles in a leaf: with fewer, more memory, and fewer triangles are near if
-  /// neighbours
-  ///   differ in size
-  SurfaceTree(std::span<const Vec3> points, std::span<const Triangle> triangles,
-              std::size_t leaf_size = triangles_in_leaf);
+  SurfaceTree(std::span<const Vec3> points, std::span<const Triangle> triangles);
 
   /// Generalised winding number: 1 well inside a closed surface oriented outwards, 0 outside, in between
   /// around holes; on the surface the mean of both sides. Nearby triangles are evaluated exactly, distant

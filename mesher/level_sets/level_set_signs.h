@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "common/geometry/open_winding.h"
+#include "common/geometry/surface_tree.h"
 #include "mesher/level_sets/grid_winding.h"
 #include "mesher/level_sets/openvdb_grids.h"
 #include "tetwright/progress.h"
@@ -13,8 +13,8 @@
 
 namespace tetwright {
 
-/// The generalised winding number of a repaired surface at grid points: exact for its closed part, by its
-/// boundary for its open part. All functions may be called concurrently.
+/// The generalised winding number of a repaired surface at grid points: exact for its closed part, by a tree
+/// for its open part. All functions may be called concurrently.
 class NodeWinding {
  public:
   /// \param points grid coordinates
@@ -31,7 +31,7 @@ class NodeWinding {
 
  private:
   GridWinding closed_;
-  std::optional<OpenWinding> open_;
+  std::optional<SurfaceTree> open_;
   std::array<int, 3> low_, high_;  ///< the grid points of the bounding box
 };
 

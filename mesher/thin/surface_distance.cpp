@@ -210,8 +210,24 @@ bool SurfaceDistance::is_ball_empty(const Vec3& center, double radius) const {
 }
 
 bool SurfaceDistance::inside(const Vec3& point) const {
-  const int winding =
-      winding_below(tree_, triangles_, point, [&](std::size_t t) { return parts_[t] == Part::closed; });
+  int winding = 0;
+  std::vector<Index> counted;  // of the triangles in several parts, which may be visited several times
+  tree_.for_each_in(
+      [&](const Box3& box) {
+        return box.low.x() <= point.x() && point.x() <= box.high.x() && box.low.y() <= point.y() &&
+               point.y() <= box.high.y() && box.low.z() <= point.z();
+      },
+      [&](std::size_t t) {
+        if (parts_[t] != Part::closed) return;
+        const auto& [a, b, c] = triangles_[t];
+        const int crossing = vertical_crossing(a, b, c, point);
+        if (crossing == 0 || !at_or_above(a, b, c, crossing, point)) return;
+        if (tree_.is_split(t)) {
+          if (std::find(counted.begin(), counted.end(), t) != counted.end()) return;
+          counted.push_back(static_cast<Index>(t));
+        }
+        winding += crossing;
+      });
   if (!open_) return winding > 0;
   static const Vec3 offset(tolerance::winding_offset[0], tolerance::winding_offset[1],
                            tolerance::winding_offset[2]);

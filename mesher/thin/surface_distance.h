@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "common/geometry/open_winding.h"
 #include "common/geometry/reference_tree.h"
+#include "common/geometry/surface_tree.h"
 #include "tetwright/surface_mesh.h"
 #include "tetwright/tet_mesh.h"
 
@@ -48,8 +48,8 @@ class SurfaceDistance {
   /// Whether no triangle but those of caps that are no walls is nearer to a point than `radius`.
   bool is_ball_empty(const Vec3& center, double radius) const;
 
-  /// True where the winding numbers of the closed components (exact) and of the open ones (by their
-  /// boundaries) add up to more than 1/2.
+  /// True where the winding numbers of the closed components (exact) and of the open ones (by a tree) add up
+  /// to more than 1/2.
   bool inside(const Vec3& point) const;
 
   enum class Side { wall, gap };
@@ -86,7 +86,7 @@ class SurfaceDistance {
   std::vector<Vec3> normals_;                   ///< unit; zero for triangles without area
   enum class Part : std::uint8_t { closed, open, cap };
   std::vector<Part> parts_;  ///< the kind of component that each triangle is in
-  std::optional<OpenWinding> open_;
+  std::optional<SurfaceTree> open_;
   bool intersects_itself_;
   std::vector<Sides> sides_;  ///< by triangle
 };
