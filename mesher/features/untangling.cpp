@@ -3,7 +3,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <deque>
 
@@ -165,16 +164,10 @@ bool untangle(std::vector<Vec3>& points, std::span<const Tet> tets, std::span<co
   Distortion distortion(points, tets, freedom);
   if (!(distortion.size() > 0)) return false;
   double epsilon = 1;
-  std::array<double, Limits::max_rounds> min_determinants;  // by round, the smallest determinant
   for (int round = 0; round < Limits::max_rounds; ++round) {
     const double before = distortion.value(epsilon, nullptr), after = minimise(distortion, epsilon);
     const double least = distortion.min_determinant();
     if (least > Limits::min_determinant) return true;
-    min_determinants[static_cast<std::size_t>(round)] = least;
-    if (constexpr int span = Limits::trend_rounds; round >= span) {
-      const double gain = (least - min_determinants[static_cast<std::size_t>(round - span)]) / span;
-      if (least + Limits::max_speed_up * gain * (Limits::max_rounds - 1 - round) <= 0) return false;
-    }
     const double gain = std::max(1 - after / before, Limits::min_reduction);
     const double aim = (1 - gain) * Distortion::regularised(least, epsilon);
     epsilon = least < aim ? 2 * std::sqrt(aim * (aim - least)) : Limits::min_epsilon;

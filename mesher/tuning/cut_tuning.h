@@ -169,11 +169,6 @@ struct CutTuning {
     static constexpr int max_rounds = 40, max_steps = 60;
     static constexpr std::size_t memory = 6;
     static constexpr int max_halvings = 30;
-    /// Points are given up if the smallest determinant would stay negative even if it grew this much faster
-    /// in all rounds left than in the last ones, as many as the second. Nine of ten failures end here, most
-    /// after a fourth of the rounds.
-    static constexpr double max_speed_up = 3;
-    static constexpr int trend_rounds = 10;
     /// Length of the first step, in mean edges, and the share of the expected decrease that a step must reach
     /// (Nocedal and Wright 2006, section 3.1).
     static constexpr double first_step = 0.1, sufficient_decrease = 1e-4;
