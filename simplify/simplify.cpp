@@ -301,7 +301,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
 
 DeviationReport deviation(const TetMesh& mesh, const TriangleMesh& surface, const Progress* progress) {
   const EditableMesh editable(TetMesh(mesh), "mesh");
-  InputSurface input(editable, &surface);
+  RepresentedSurface input(editable, &surface);
   input.find_hidden(editable);
   return input.deviation(editable, progress);
 }

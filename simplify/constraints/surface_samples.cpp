@@ -73,15 +73,15 @@ ProjectionTree faces_of(const EditableMesh& mesh) {
 
 }  // namespace
 
-InputSurface::Kind InputSurface::kind_of(RegionId inside, RegionId across, PatchId patch) {
+RepresentedSurface::Kind RepresentedSurface::kind_of(RegionId inside, RegionId across, PatchId patch) {
   return {std::min(inside, across), std::max(inside, across), patch};
 }
 
-InputSurface::Kind InputSurface::kind_of(const ProjectionTree::Item& item) {
+RepresentedSurface::Kind RepresentedSurface::kind_of(const ProjectionTree::Item& item) {
   return {item.kind[0], item.kind[1], static_cast<PatchId>(item.kind[2])};
 }
 
-InputSurface::InputSurface(const EditableMesh& mesh, const TriangleMesh* given) {
+RepresentedSurface::RepresentedSurface(const EditableMesh& mesh, const TriangleMesh* given) {
   const std::vector<InterfaceFace> faces = mesh.interface_faces();
   const auto corner = [&](std::size_t face, int k) { return mesh.position(faces[face].ids[k]); };
   double total_edge = 0;
@@ -122,7 +122,7 @@ InputSurface::InputSurface(const EditableMesh& mesh, const TriangleMesh* given) 
   if (items.size() > given_items) triangles_ = ProjectionTree(std::move(points), std::move(items));
 }
 
-void InputSurface::find_hidden(const EditableMesh& mesh) {
+void RepresentedSurface::find_hidden(const EditableMesh& mesh) {
   const ProjectionTree own = faces_of(mesh);
   hidden_.resize(triangles_.items().size());
   parallel_for(0, hidden_.size(), Grains::samples, [&](std::size_t begin, std::size_t end) {
@@ -137,21 +137,21 @@ void InputSurface::find_hidden(const EditableMesh& mesh) {
   });
 }
 
-ProjectionTree InputSurface::shown() const {
+ProjectionTree RepresentedSurface::shown() const {
   std::vector<ProjectionTree::Item> items;
   for (std::size_t i = 0; i < triangles_.items().size(); ++i)
     if (hidden_.empty() || !hidden_[i]) items.push_back(triangles_.items()[i]);
   return {triangles_.points(), std::move(items)};
 }
 
-double InputSurface::accuracy() const {
+double RepresentedSurface::accuracy() const {
   Box3 box;
   for (const ProjectionTree::Item& item : triangles_.items())
     for (int k = 0; k < 3; ++k) box.add(triangles_.corner(item, k));
   return tolerance::deviation_share * (box.high - box.low).norm();
 }
 
-DeviationReport InputSurface::deviation(const EditableMesh& mesh, const Progress* progress) const {
+DeviationReport RepresentedSurface::deviation(const EditableMesh& mesh, const Progress* progress) const {
   DeviationReport report;
   const double scale = mesh.space().scale();
   const bool given = std::any_of(triangles_.items().begin(), triangles_.items().end(), is_given);
@@ -173,7 +173,8 @@ DeviationReport InputSurface::deviation(const EditableMesh& mesh, const Progress
   return report;
 }
 
-std::vector<InputSurface::FarFace> InputSurface::far_faces(const EditableMesh& mesh, double limit) const {
+std::vector<RepresentedSurface::FarFace> RepresentedSurface::far_faces(const EditableMesh& mesh,
+                                                                       double limit) const {
   const ProjectionTree input = shown(), own = faces_of(mesh);
   std::vector<FarFace> faces;
   if (input.empty() || own.empty()) return faces;
@@ -184,8 +185,9 @@ std::vector<InputSurface::FarFace> InputSurface::far_faces(const EditableMesh& m
   return faces;
 }
 
-SurfaceSamples::SurfaceSamples(const EditableMesh& mesh, std::size_t records, const InputSurface& surface,
-                               double edge, const std::function<double(const Vec3&)>& scale)
+SurfaceSamples::SurfaceSamples(const EditableMesh& mesh, std::size_t records,
+                               const RepresentedSurface& surface, double edge,
+                               const std::function<double(const Vec3&)>& scale)
     : surface_(surface.triangles()) {
   const std::vector<InterfaceFace> faces = mesh.interface_faces();
   resize(records);
@@ -194,7 +196,7 @@ SurfaceSamples::SurfaceSamples(const EditableMesh& mesh, std::size_t records, co
   items.reserve(faces.size());
   for (std::size_t i = 0; i < faces.size(); ++i) {
     const InterfaceFace& f = faces[i];
-    kinds_[i] = InputSurface::kind_of(f.inside, f.across, f.patch);
+    kinds_[i] = RepresentedSurface::kind_of(f.inside, f.across, f.patch);
     for (const Index p : f.ids) points[p] = mesh.position(p);
     items.push_back({f.ids, {static_cast<std::uint32_t>(i), 0, 0}});
   }
@@ -230,12 +232,12 @@ SurfaceSamples::SurfaceSamples(const EditableMesh& mesh, std::size_t records, co
            i < std::min(places.size(), (block + 1) * Grains::samples); ++i) {
         const Vec3& at = places[i].at;
         const ProjectionTree::Item& from = surface_.items()[places[i].item];
-        const bool given = InputSurface::is_given(from);
+        const bool given = RepresentedSurface::is_given(from);
         const Vec3 outwards = normal(surface_, from);
         // Skip the opposite side of a thin wall, and other interfaces.
         const auto accepts = [&](const ProjectionTree::Item& item) {
           const Kind& kind = kinds_[item.kind[0]];
-          if (!given) return kind == InputSurface::kind_of(from);
+          if (!given) return kind == RepresentedSurface::kind_of(from);
           return !kind.is_sheet() && (kind.high != outside_id || normal(mesh_faces, item).dot(outwards) > 0);
         };
         double limit = surface.reach();
@@ -278,7 +280,7 @@ bool SurfaceSamples::choose_new_owners(SurfaceGrid::Edit& edit, double max_dista
     if (first_[record] == none) continue;
     const Kind kind = kinds_[record];
     const auto same_kind = [&](const SurfaceGrid::Added& a) {
-      return InputSurface::kind_of(a.inside, a.across, a.patch) == kind;
+      return RepresentedSurface::kind_of(a.inside, a.across, a.patch) == kind;
     };
     const bool all = std::none_of(edit.added.begin(), edit.added.end(), same_kind);
     edit.takers.clear();
@@ -405,7 +407,7 @@ void SurfaceSamples::commit(const SurfaceGrid::Edit& edit) {
   for (std::size_t k = 0; k < edit.added.size(); ++k) {
     const SurfaceGrid::Added& a = edit.added[k];
     first_[edit.added_records[k]] = none;
-    kinds_[edit.added_records[k]] = InputSurface::kind_of(a.inside, a.across, a.patch);
+    kinds_[edit.added_records[k]] = RepresentedSurface::kind_of(a.inside, a.across, a.patch);
   }
   for (const SurfaceGrid::ReassignedSample& h : edit.reassigned) {
     const std::uint32_t record = edit.added_records[h.added];

@@ -17,7 +17,7 @@
 namespace tetwright {
 
 /// The surface that a mesh represents, as triangles. Working coordinates.
-class InputSurface {
+class RepresentedSurface {
  public:
   /// Uses the given surface, the sheets of the mesh, and the parts of its own boundary and interfaces that
   /// are far from the given surface (caps of holes, layers, the box of a meshed outside). Without a given
@@ -25,7 +25,7 @@ class InputSurface {
   ///
   /// \param mesh before any operation.
   /// \param given triangles wound outwards, input units; may be null.
-  InputSurface(const EditableMesh& mesh, const TriangleMesh* given);
+  RepresentedSurface(const EditableMesh& mesh, const TriangleMesh* given);
 
   /// The regions on both sides of a triangle and its patch; unused for given triangles.
   struct Kind {
@@ -95,7 +95,7 @@ class SurfaceSamples {
   ///   vertices of the input first.
   /// \param scale factor on `edge`, by position.
   SurfaceSamples(
-      const EditableMesh& mesh, std::size_t records, const InputSurface& surface, double edge,
+      const EditableMesh& mesh, std::size_t records, const RepresentedSurface& surface, double edge,
       const std::function<double(const Vec3&)>& scale = [](const Vec3&) { return 1; });
 
   /// Assigns the samples of an edit's removed triangles, whose records must be known, to its added ones.
@@ -135,7 +135,7 @@ class SurfaceSamples {
   double largest_distance() const;
 
  private:
-  using Kind = InputSurface::Kind;
+  using Kind = RepresentedSurface::Kind;
   struct Sample {
     Vec3 position;
     float distance;      ///< from its triangle

@@ -8,7 +8,7 @@
 
 #include "common/geometry/self_intersection.h"
 #include "common/parallel/bucket_sort.h"
-#include "simplify/mesh/point_merger.h"
+#include "simplify/mesh/bulk_merger.h"
 #include "simplify/tuning/tuning.h"
 #include "tetwright/resources.h"
 
@@ -27,7 +27,7 @@ struct EdgeUse {
 
 }  // namespace
 
-bool PointMerger::clusters_are_contractible() {
+bool BulkMerger::clusters_are_contractible() {
   // Vertices minus edges plus triangles inside the cluster of each point. Clusters are connected, as each
   // point moves along an edge. An edge inside has a point that moves, so it has two triangles, which run
   // through it in opposite directions.
@@ -58,7 +58,7 @@ bool PointMerger::clusters_are_contractible() {
   return wrong.empty();
 }
 
-bool PointMerger::edges_are_kept() {
+bool BulkMerger::edges_are_kept() {
   std::vector<Index> starts;
   std::vector<std::pair<Index, EdgeUse>> uses;  // with the smaller end
   bucket_sort(
@@ -105,9 +105,9 @@ bool PointMerger::edges_are_kept() {
   return wrong.empty();
 }
 
-bool PointMerger::topology_is_kept() { return clusters_are_contractible() && edges_are_kept(); }
+bool BulkMerger::topology_is_kept() { return clusters_are_contractible() && edges_are_kept(); }
 
-bool PointMerger::volumes_are_kept() {
+bool BulkMerger::volumes_are_kept() {
   // Six times the volumes before and after, as sums over the faces, in parts of fixed size.
   struct Volumes {
     std::vector<double> before, after;
@@ -150,7 +150,7 @@ bool PointMerger::volumes_are_kept() {
   return false;
 }
 
-bool PointMerger::surface_is_embedded() {
+bool BulkMerger::surface_is_embedded() {
   // Touching points have one number, as triangles that share a point may touch there.
   const std::vector<Index> from = parallel_collect<Index>(
       0, faces_.size(), Grains::slots, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {

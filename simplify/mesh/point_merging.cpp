@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "simplify/mesh/point_merger.h"
+#include "simplify/mesh/bulk_merger.h"
 
 #include <algorithm>
 #include <atomic>
@@ -23,7 +23,7 @@ using Merging = SimplifyTuning::Merging;
 
 }  // namespace
 
-void PointMerger::list_faces() {
+void BulkMerger::list_faces() {
   faces_ = mesh_.interface_faces();
   parallel_for(0, faces_.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
@@ -41,7 +41,7 @@ void PointMerger::list_faces() {
       [&](Index code) { return faces_[code / 3].ids[code % 3]; }, faces_at_.starts, faces_at_.items);
 }
 
-bool PointMerger::is_smooth(Index p) const {
+bool BulkMerger::is_smooth(Index p) const {
   const std::span<const Index> uses = faces_at_[p];
   const InterfaceFace& first = faces_[uses[0] / 3];
   if (first.is_sheet()) return false;
@@ -67,7 +67,7 @@ bool PointMerger::is_smooth(Index p) const {
   return at == start;
 }
 
-void PointMerger::classify_points() {
+void BulkMerger::classify_points() {
   kinds_.assign(mesh_.point_slots(), Kind::fixed);
   const auto collect = [&](const auto& accepts) {
     return parallel_collect<Index>(
@@ -83,7 +83,7 @@ void PointMerger::classify_points() {
   smooth_ = collect([&](Index p) { return on_surface(p) && is_smooth(p); });
 }
 
-void PointMerger::list_stars() {
+void BulkMerger::list_stars() {
   std::vector<std::uint8_t> listed(mesh_.point_slots(), 0);
   for (const std::vector<Index>* const points : {&smooth_, &inner_})
     for (const Index p : *points) listed[p] = 1;
@@ -101,7 +101,7 @@ void PointMerger::list_stars() {
 }
 
 template <class F>
-bool PointMerger::for_each_neighbour(Index p, const F& f) const {
+bool BulkMerger::for_each_neighbour(Index p, const F& f) const {
   if (on_surface(p)) {
     for (const Index code : faces_at_[p])
       for (const Index q : faces_[code / 3].ids)
@@ -114,7 +114,7 @@ bool PointMerger::for_each_neighbour(Index p, const F& f) const {
   return true;
 }
 
-void PointMerger::merge(const std::vector<Index>& points) {
+void BulkMerger::merge(const std::vector<Index>& points) {
   for (const Index p : points) kinds_[p] = Kind::undecided;
   // Rounds: an undecided point whose key is above those of all undecided neighbours is kept, and its
   // neighbours are merged (Luby 1986). The result is that of one pass in descending order of the keys.
@@ -151,7 +151,7 @@ void PointMerger::merge(const std::vector<Index>& points) {
   });
 }
 
-Index PointMerger::next_target(Index p, Index last) const {
+Index BulkMerger::next_target(Index p, Index last) const {
   const Vec3& at = mesh_.position(p);
   using Place = std::pair<double, Index>;  // squared distance, point
   const Place after = last == p ? Place(0, p) : Place((mesh_.position(last) - at).squaredNorm(), last);
@@ -166,7 +166,7 @@ Index PointMerger::next_target(Index p, Index last) const {
 }
 
 template <std::size_t n>
-Index PointMerger::moved_farthest(const std::array<Index, n>& ids) const {
+Index BulkMerger::moved_farthest(const std::array<Index, n>& ids) const {
   std::pair<double, Index> farthest(-1, no_index);
   for (const Index p : ids)
     if (targets_[p] != p)
@@ -174,7 +174,7 @@ Index PointMerger::moved_farthest(const std::array<Index, n>& ids) const {
   return farthest.second;
 }
 
-bool PointMerger::is_bad(const Triangle& face) const {
+bool BulkMerger::is_bad(const Triangle& face) const {
   const Triangle to = image(face);
   if (to == face || vanishes(to)) return false;
   const Vec3 before = normal(face), after = normal(to);
@@ -193,7 +193,7 @@ bool PointMerger::is_bad(const Triangle& face) const {
   return false;
 }
 
-bool PointMerger::is_bad(const Tet& tet) const {
+bool BulkMerger::is_bad(const Tet& tet) const {
   const Tet to = image(tet);
   if (to == tet || vanishes(to)) return false;
   double longest_squared = 0;
@@ -205,14 +205,14 @@ bool PointMerger::is_bad(const Tet& tet) const {
   return det <= Merging::min_tet_shape * longest_squared * std::sqrt(longest_squared);
 }
 
-void PointMerger::undo(Index p) {
+void BulkMerger::undo(Index p) {
   if (targets_[p] == p) return;
   targets_[p] = p;
   kinds_[p] = Kind::kept;
   if (on_surface(p)) changed_.push_back(p);
 }
 
-void PointMerger::move_elsewhere(std::vector<Index>& points) {
+void BulkMerger::move_elsewhere(std::vector<Index>& points) {
   std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end()), points.end());
   std::vector<Index> targets(points.size());
@@ -234,7 +234,7 @@ void PointMerger::move_elsewhere(std::vector<Index>& points) {
   }
 }
 
-void PointMerger::repair_faces() {
+void BulkMerger::repair_faces() {
   std::vector<Index> changed;
   do {
     changed = parallel_collect<Index>(0, faces_.size(), Grains::slots,
@@ -247,7 +247,7 @@ void PointMerger::repair_faces() {
   } while (!changed.empty());
 }
 
-void PointMerger::repair_tets(const std::optional<std::vector<Index>>& points) {
+void BulkMerger::repair_tets(const std::optional<std::vector<Index>>& points) {
   const auto list = [&](Index t, std::vector<Index>& out) {
     if (!mesh_.dead(t) && is_bad(mesh_.points(t))) out.push_back(moved_farthest(mesh_.points(t)));
   };
@@ -276,7 +276,7 @@ void PointMerger::repair_tets(const std::optional<std::vector<Index>>& points) {
   }
 }
 
-bool PointMerger::run() {
+bool BulkMerger::run() {
   if (!mesh_.all_positive()) return false;
   targets_.resize(mesh_.point_slots());
   std::iota(targets_.begin(), targets_.end(), Index{0});
@@ -308,7 +308,7 @@ bool PointMerger::run() {
   return !intersects_;
 }
 
-void PointMerger::tets(std::vector<Tet>& tets, std::vector<RegionId>& regions) const {
+void BulkMerger::tets(std::vector<Tet>& tets, std::vector<RegionId>& regions) const {
   const std::vector<Index> remaining = parallel_collect<Index>(
       0, mesh_.tet_slots(), Grains::slots, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
         for (std::size_t i = begin; i < end; ++i)
@@ -325,7 +325,7 @@ void PointMerger::tets(std::vector<Tet>& tets, std::vector<RegionId>& regions) c
   });
 }
 
-std::vector<InterfaceFace> PointMerger::faces() const {
+std::vector<InterfaceFace> BulkMerger::faces() const {
   return parallel_collect<InterfaceFace>(
       0, faces_.size(), Grains::slots,
       [&](std::size_t begin, std::size_t end, std::vector<InterfaceFace>& out) {
@@ -342,7 +342,7 @@ bool merge_points(EditableMesh& mesh, const PointMerging& options) {
   std::vector<RegionId> regions;
   std::vector<InterfaceFace> faces;
   {
-    PointMerger merger(mesh, options);
+    BulkMerger merger(mesh, options);
     if (!merger.run()) return false;
     merger.tets(tets, regions);
     faces = merger.faces();

@@ -11,7 +11,7 @@ namespace tetwright {
 
 void InputSamples::keep_surface(const TriangleMesh* surface, bool measured) {
   const EditableMesh& mesh = constrained_.mesh;
-  surface_ = std::make_unique<InputSurface>(mesh, surface);
+  surface_ = std::make_unique<RepresentedSurface>(mesh, surface);
   if (measured) surface_->find_hidden(mesh);
 }
 
@@ -28,7 +28,7 @@ std::vector<Triangle> InputSamples::add_far_samples(double limit) {
   const std::vector<InterfaceFace> faces = mesh.interface_faces();
   std::vector<Triangle> far;
   SurfaceGrid::Edit edit;
-  for (const InputSurface::FarFace& f : surface_->far_faces(mesh, limit)) {
+  for (const RepresentedSurface::FarFace& f : surface_->far_faces(mesh, limit)) {
     const Triangle& ids = faces[f.face].ids;
     far.push_back(face_key(ids));
     if (!f.place) continue;

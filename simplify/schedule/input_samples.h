@@ -45,7 +45,7 @@ class InputSamples {
 
  private:
   ConstrainedMesh& constrained_;
-  std::unique_ptr<InputSurface> surface_;
+  std::unique_ptr<RepresentedSurface> surface_;
   std::unique_ptr<SurfaceSamples> samples_;
   double spacing_ = std::numeric_limits<double>::infinity();
 };

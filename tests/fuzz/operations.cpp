@@ -94,7 +94,7 @@ void run_operations(std::string_view input_bytes) {
   mesh.compact(2048, 512);
   SurfaceGrid grid;
   grid.build(mesh);
-  const InputSurface surface(mesh, nullptr);
+  const RepresentedSurface surface(mesh, nullptr);
   SurfaceSamples samples(mesh, grid.record_count(), surface, mesh.space().scale());
   grid.set_samples(&samples);
   VolumeLedger ledger;

@@ -77,7 +77,7 @@ struct Workbench {
   /// Assigns to the triangles samples of `surface` (input units) or, if null, of the mesh's own surface.
   /// \pre The grid is as built.
   void own_samples(double edge, const TriangleMesh* surface = nullptr) {
-    input_surface = std::make_unique<InputSurface>(mesh, surface);
+    input_surface = std::make_unique<RepresentedSurface>(mesh, surface);
     samples = std::make_unique<SurfaceSamples>(mesh, grid.record_count(), *input_surface, edge);
     grid.set_samples(samples.get());
   }
@@ -140,7 +140,7 @@ struct Workbench {
 
   EditableMesh mesh;
   SurfaceGrid grid;
-  std::unique_ptr<InputSurface> input_surface;
+  std::unique_ptr<RepresentedSurface> input_surface;
   std::unique_ptr<SurfaceSamples> samples;
   VolumeLedger ledger;  ///< no bounds unless opened
   BlockRules rules;

@@ -53,29 +53,29 @@ std::size_t count_owned(const Workbench& w) {
   return count;
 }
 
-TEST(InputSurface, IsTheMeshsOwnWithoutAGivenOne) {
+TEST(RepresentedSurface, IsTheMeshsOwnWithoutAGivenOne) {
   Workbench w(grid_mesh({4, 4, 4}, [](int x, int, int) { return Tag(x < 2 ? 1 : 2); }));
-  const InputSurface surface(w.mesh, nullptr);
+  const RepresentedSurface surface(w.mesh, nullptr);
   EXPECT_EQ(surface.triangles().items().size(), 2U * 16 * 6 + 2U * 16);
   std::map<RegionId, int> across;
   for (const auto& item : surface.triangles().items()) {
-    EXPECT_FALSE(InputSurface::is_given(item));
-    ++across[InputSurface::kind_of(item).high];
+    EXPECT_FALSE(RepresentedSurface::is_given(item));
+    ++across[RepresentedSurface::kind_of(item).high];
   }
   EXPECT_EQ(across.at(1), 32);  // the two materials
   EXPECT_EQ(across.at(outside_id), 192);
 }
 
-TEST(InputSurface, PartsFarFromTheGivenOneStandForThemselves) {
+TEST(RepresentedSurface, PartsFarFromTheGivenOneStandForThemselves) {
   const TetMesh mesh = grid_mesh({12, 3, 3}, [](int, int, int) { return Tag(1); });
   TriangleMesh given = boundary_of(mesh);
   std::erase_if(given.triangles, [&](const Triangle& t) { return given.points[t[0]].x() > 4; });
   Workbench w(mesh);
-  const InputSurface surface(w.mesh, &given);
+  const RepresentedSurface surface(w.mesh, &given);
   std::size_t own = 0;
   for (const auto& item : surface.triangles().items()) {
-    own += !InputSurface::is_given(item);
-    if (!InputSurface::is_given(item)) {
+    own += !RepresentedSurface::is_given(item);
+    if (!RepresentedSurface::is_given(item)) {
       EXPECT_GT(w.mesh.space().to_input(surface.triangles().corner(item, 0)).x(), 5);
     }
   }

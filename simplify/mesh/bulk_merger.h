@@ -25,9 +25,9 @@ inline bool vanishes(const Tet& t) {
 }
 
 /// The moves of merge_points(): which points stay, and onto which ones the others move.
-class PointMerger {
+class BulkMerger {
  public:
-  PointMerger(const EditableMesh& mesh, const PointMerging& options)
+  BulkMerger(const EditableMesh& mesh, const PointMerging& options)
       : mesh_(mesh), options_(options), max_squared_(options.max_distance * options.max_distance) {}
   /// Finds the moves; false if there are none, or the mesh is not embedded.
   bool run();
