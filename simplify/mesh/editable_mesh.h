@@ -91,11 +91,7 @@ class EditableMesh {
   /// A tet of the point; no_index: the point is dead.
   Index incident_tet(Index point) const { return incident_tets_[point]; }
   /// Whether the point's star was changed since the last begin_round().
-  bool touched(Index point) const { return touched_[point] >= round_start_; }
-  /// Number of the current batch of operations, or of the last one.
-  std::uint32_t batch() const { return batch_; }
-  /// The batch in which the point's star last changed; 0: not since the mesh was compacted.
-  std::uint32_t changed_in(Index point) const { return touched_[point]; }
+  bool touched(Index point) const { return touched_[point] == round_; }
   const Tet& points(Index t) const { return tets_[t].points; }
   bool dead(Index t) const { return tets_[t].points[0] == no_index; }
   FaceLink link(Index t, int face) const { return tets_[t].links[face]; }
@@ -136,12 +132,12 @@ class EditableMesh {
     WriteRule::check(point);
     incident_tets_[point] = tet;
   }
-  /// Marks that the point's star has changed in the current batch.
+  /// Marks that the point's star has changed in the current round.
   void touch(Index point) {
     WriteRule::check(point);
     // Several threads may touch a point at the same time. Relaxed, since all store the same value and no
     // thread reads it meanwhile.
-    std::atomic_ref<std::uint32_t>(touched_[point]).store(batch_, std::memory_order_relaxed);
+    std::atomic_ref<std::uint32_t>(touched_[point]).store(round_, std::memory_order_relaxed);
   }
   void set_points(Index t, const Tet& points) {
     check_tet(t);
@@ -179,10 +175,8 @@ class EditableMesh {
   FreeSlots& free_points() { return free_points_; }
   void make_room(std::size_t tets, std::size_t points);
   Reservations& reservations() { return reservations_; }
-  /// Begins a batch of operations.
-  void begin_batch() { ++batch_; }
-  /// Begins a round: no point counts as touched.
-  void begin_round() { round_start_ = batch_ + 1; }
+  /// Clears all touched marks.
+  void begin_round() { ++round_; }
   /// Removes dead tets and points and renumbers both along a space-filling curve, so that neighbours in space
   /// are close in memory.
   ///
@@ -235,8 +229,8 @@ class EditableMesh {
   std::vector<float> qualities_;
   std::vector<Vec3> positions_;
   std::vector<Index> incident_tets_;
-  std::vector<std::uint32_t> touched_;  ///< by point: the batch of the last change
-  std::uint32_t batch_ = 0, round_start_ = 1;
+  std::vector<std::uint32_t> touched_;  ///< by point: the round of the last change
+  std::uint32_t round_ = 1;
   Reservations reservations_;
   std::size_t live_ = 0;
   FreeSlots free_tets_, free_points_;

@@ -50,8 +50,6 @@ struct Acceptance {
   /// worst quality that it must keep.
   double worse_probability = 0;
   float worse_floor = 0;
-  /// Min factor on the worst quality of all other operations.
-  float min_gain = 1;
   /// Operations whose new tets are all better than this are accepted, whatever the old tets.
   std::optional<float> good_enough;
 };

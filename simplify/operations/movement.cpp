@@ -83,13 +83,11 @@ Outcome move_to(Workspace& ws, const BlockRules& rules, const Vec3& to, const st
   Star& star = ws.star;
   Proposal& proposal = ws.proposal;
   proposal.edit.clear();
-  proposal.volumes = star.volume_changes(to - star.centre_position);
   if (!star.interface_triangles.empty()) {
-    // Much cheaper than the tests of the surface.
-    if (!ws.ledger.allows(proposal.volumes)) return Outcome::volume;
     if (!surface_edit(ws, rules, to) || !stays_near_crease(star, rules, to)) return Outcome::surface_error;
     if (const Outcome o = ws.test_surface(rules); o != Outcome::done) return o;
   }
+  proposal.volumes = star.volume_changes(to - star.centre_position);
   proposal.change = Proposal::Change::move;
   proposal.centre = star.centre;
   proposal.position = to;

@@ -186,7 +186,6 @@ void Proposal::claim_cavity(const EditableMesh& mesh) {
 void begin_batch(EditableMesh& mesh, std::size_t proposals, std::size_t new_tets, std::size_t new_points) {
   mesh.make_room(new_tets, new_points);
   mesh.reservations().begin_batch(proposals);
-  mesh.begin_batch();
 }
 
 void grant(EditableMesh& mesh, SurfaceGrid& grid, Proposal& p) {

@@ -61,7 +61,7 @@ Outcome Workspace::gather(Index point) {
 float Workspace::acceptance_limit(const BlockRules& rules, float worst) {
   const bool may_worsen =
       rules.acceptance.worse_probability > 0 && random.uniform() < rules.acceptance.worse_probability;
-  const float limit = (may_worsen ? rules.acceptance.worse_floor : rules.acceptance.min_gain) * worst;
+  const float limit = may_worsen ? rules.acceptance.worse_floor * worst : worst;
   return rules.acceptance.good_enough ? std::min(*rules.acceptance.good_enough, limit) : limit;
 }
 

@@ -30,7 +30,6 @@ class LocalArea final : public ImprovementArea {
   /// Initial number of tets, with the rim.
   std::size_t tet_count() const override { return first_count_; }
   /// Mean edge of the initial tets.
-  bool whole_mesh() const override { return false; }
   double usual_edge() const override { return usual_edge_; }
   /// \pre The limit does not increase from call to call: unchanged tets that were above it are not listed.
   std::vector<TetSnapshot> bad_tets(float limit) override;

@@ -52,7 +52,6 @@ void Engine::compact() {
   const std::size_t spare = mesh_.live_tets() / Slots::spare_inverse + Slots::min_spare;
   SlotNumbers numbers;
   mesh_.compact(spare, spare / 2, &numbers);
-  fitted_.emplace(mesh_);
   if (first) {
     grid_.build(mesh_);
   } else {

@@ -10,7 +10,6 @@
 #include "simplify/mesh/point_merging.h"
 #include "simplify/schedule/block_runner.h"
 #include "simplify/schedule/input_samples.h"
-#include "simplify/schedule/refused_stars.h"
 #include "simplify/schedule/round_recorder.h"
 
 namespace tetwright {
@@ -46,9 +45,6 @@ class Engine {
   const VolumeLedger& ledger() const { return constrained_.ledger; }
   RoundRecorder& recorder() { return recorder_; }
   InputSamples& input_samples() { return samples_; }
-  /// The points that fit their samples: fit_to_samples() found no step worth a move.
-  /// \pre compact() has been called.
-  RefusedStars& fitted() { return *fitted_; }
   BlockRules rules;
 
   /// Compacts the mesh, leaves free slots for operations that add elements, and rebuilds the grid. Every
@@ -91,7 +87,6 @@ class Engine {
   SurfaceProjection projection_;
   InputSamples samples_;
   std::optional<EdgeSizes> sizes_;
-  std::optional<RefusedStars> fitted_;
   BlockRunner runner_;
   RoundRecorder recorder_;
   const Progress* progress_;  ///< may be null

@@ -9,15 +9,10 @@
 namespace tetwright {
 
 void fit_interfaces(Engine& engine, float floor, double above) {
-  RefusedStars& fitted = engine.fitted();
-  std::vector<Index> points = interface_points(
+  const std::vector<Index> points = interface_points(
       engine.mesh(), [&](RegionId region) { return engine.ledger().utilization(region) > above; });
-  std::erase_if(points, [&](Index p) { return fitted.holds(p); });
-  engine.runner().each_star(points, Operation::fit, [&](Workspace& ws) {
-    const Outcome o = fit_to_samples(ws, engine.rules, floor);
-    if (o == Outcome::no_candidate) fitted.add(ws.star.centre);
-    return o;
-  });
+  engine.runner().each_star(points, Operation::fit,
+                            [&](Workspace& ws) { return fit_to_samples(ws, engine.rules, floor); });
 }
 
 void fit_farthest_samples(Engine& engine, const std::vector<TetSnapshot>& tets, float floor) {

@@ -17,80 +17,48 @@ namespace {
 using Collapses = SimplifyTuning::Collapses;
 
 /// Smooths the tet's points until one move improves the worst tet around.
-Outcome move_points(Workspace& ws, const BlockRules& rules, const TetSnapshot& item, RefusedStars& refused) {
+Outcome move_points(Workspace& ws, const BlockRules& rules, const TetSnapshot& item) {
   for (Index p : item.points) {
-    if (refused.holds(p)) continue;
     Outcome o = ws.gather(p);
     if (o == Outcome::done) o = optimise(ws, rules);
     if (ws.count(Operation::optimise, o) == Outcome::done) return o;
-    if (lies_within_star(o)) refused.add(p);
   }
   return Outcome::no_candidate;
-}
-
-/// Whether the tet must try what improves the worst tet at its edge.
-bool has_turn_at_edge(Workspace& ws, const ImproveRules& step, Index tet, int edge) {
-  if (!step.whole_mesh || ws.ring.gather(ws.mesh, tet, edge) != Outcome::done) return true;
-  const float quality = ws.mesh.quality(tet);
-  return std::none_of(ws.ring.tets.begin(), ws.ring.tets.end(), [&](Index t) {
-    const float other = ws.mesh.quality(t);
-    return other < quality || (other == quality && t < tet);
-  });
-}
-
-/// Likewise for a face.
-bool has_turn_at_face(const EditableMesh& mesh, const ImproveRules& step, Index tet, int face) {
-  const Index other = mesh.neighbour(tet, face);
-  if (!step.whole_mesh || other == no_index) return true;
-  const float quality = mesh.quality(tet), across = mesh.quality(other);
-  return quality < across || (quality == across && tet < other);
 }
 
 /// Tries flips until one improves the worst tet around.
 Outcome flip(Workspace& ws, const ImproveRules& step, const TetSnapshot& item) {
   for (int e = 0; e < 6; ++e)
-    if (has_turn_at_edge(ws, step, item.tet, e) &&
-        remove_edge(ws, step.relaxed, item.tet, e, full_reach) == Outcome::done)
-      return Outcome::done;
+    if (remove_edge(ws, step.relaxed, item.tet, e, full_reach) == Outcome::done) return Outcome::done;
   for (int f = 0; f < 4; ++f)
-    if (has_turn_at_face(ws.mesh, step, item.tet, f) &&
-        remove_face(ws, step.rules, item.tet, f, full_reach) == Outcome::done)
-      return Outcome::done;
+    if (remove_face(ws, step.rules, item.tet, f, full_reach) == Outcome::done) return Outcome::done;
   return Outcome::no_candidate;
 }
 
 }  // namespace
 
-Outcome improve_tet(Workspace& ws, const ImproveRules& step, const TetSnapshot& item,
-                    ImproveRefusals& refusals) {
+Outcome improve_tet(Workspace& ws, const ImproveRules& step, const TetSnapshot& item) {
   const EditableMesh& mesh = ws.mesh;
   if (!exists(mesh, item)) return Outcome::stale;
   const float quality = mesh.quality(item.tet);
   if (quality > step.bounds.bad_quality) return Outcome::stale;
   const BlockRules &rules = step.rules, &relaxed = step.relaxed;
-  const bool leaves = step.last_resort && quality < step.bounds.leave_surface;
-  const BlockRules& moving = leaves ? relaxed : rules;
-  RefusedStars& unmoved = leaves ? refusals.relaxed_moves : refusals.moves;
+  const BlockRules& moving = step.last_resort && quality < step.bounds.leave_surface ? relaxed : rules;
   if (step.flips_first && flip(ws, step, item) == Outcome::done) return Outcome::done;
-  if (move_points(ws, moving, item, unmoved) == Outcome::done) return Outcome::done;
+  if (move_points(ws, moving, item) == Outcome::done) return Outcome::done;
   if (!step.flips_first && flip(ws, step, item) == Outcome::done) return Outcome::done;
   for (Index p : item.points) {
     if (mesh.live_tets() <= rules.count.min) break;
-    if (refusals.collapses.holds(p)) continue;
     Outcome o = ws.gather(p);
     if (o == Outcome::done) o = collapse(ws, relaxed);
     if (ws.count(Operation::collapse, o) == Outcome::done) return o;
-    if (lies_within_star(o)) refusals.collapses.add(p);
   }
   if (mesh.live_tets() >= rules.count.max) return Outcome::no_candidate;
   for (int e = 0; e < 6; ++e)
-    if (has_turn_at_edge(ws, step, item.tet, e) &&
-        insert_in_edge(ws, rules, item.tet, e, InsertionPlace::best, true) == Outcome::done)
+    if (insert_in_edge(ws, rules, item.tet, e, InsertionPlace::best, true) == Outcome::done)
       return Outcome::done;
   for (int f = 0; f < 4; ++f)
-    if (has_turn_at_face(mesh, step, item.tet, f) &&
-        insert_in_face(ws, rules, item.tet, f, InsertionPlace::best) == Outcome::done)
-      return Outcome::done;
+    if (insert_in_face(ws, rules, item.tet, f, InsertionPlace::best) == Outcome::done) return Outcome::done;
   return insert_in_tet(ws, rules, item.tet, InsertionPlace::best);
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include "simplify/schedule/block_runner.h"
-#include "simplify/schedule/refused_stars.h"
 
 namespace tetwright {
 
@@ -19,22 +18,10 @@ struct ImproveRules {
   ImproveBounds bounds;
   bool last_resort;  ///< points of tets worse than bounds.leave_surface also move by `relaxed`
   bool flips_first;  ///< before smoothing: half the time, but less gain in thin layers of many materials
-  /// Every bad tet of the mesh has its turn. What would improve the worst tet at an edge or face is then left
-  /// to the turn of that tet.
-  bool whole_mesh;
-};
-
-/// Refusals of a round with the same rules: they are not tried again while nothing has changed.
-struct ImproveRefusals {
-  explicit ImproveRefusals(const EditableMesh& mesh) : moves(mesh), relaxed_moves(mesh), collapses(mesh) {}
-  RefusedStars moves;          ///< optimise() by ImproveRules::rules
-  RefusedStars relaxed_moves;  ///< optimise() by ImproveRules::relaxed
-  RefusedStars collapses;
 };
 
 /// One improvement step at a tet: tries operations until one improves the worst tet around.
-Outcome improve_tet(Workspace& ws, const ImproveRules& step, const TetSnapshot& item,
-                    ImproveRefusals& refusals);
+Outcome improve_tet(Workspace& ws, const ImproveRules& step, const TetSnapshot& item);
 
 /// Tries a random flip of the tet that leaves only good tets (Acceptance::good_enough) or improves the worst:
 /// this changes the connectivity near tets that no operation improves.

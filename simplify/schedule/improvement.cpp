@@ -111,10 +111,8 @@ class ImprovementLoop {
       const float qa = mesh_.quality(a.tet), qb = mesh_.quality(b.tet);
       return qa != qb ? qa < qb : a.tet < b.tet;
     });
-    ImproveRefusals refusals(mesh_);
     runner_.tets_in_order(tries, [&](Workspace& ws, const TetSnapshot& item, int) {
-      return improve_tet(ws, {rules_, relaxed_, bounds_, last_resort_, plan_.fast, area_.whole_mesh()}, item,
-                         refusals);
+      return improve_tet(ws, {rules_, relaxed_, bounds_, last_resort_, plan_.fast}, item);
     });
   }
 

@@ -15,8 +15,6 @@ class ImprovementArea {
   virtual ~ImprovementArea() = default;
   /// Number of tets in the area, to which fractions refer.
   virtual std::size_t tet_count() const = 0;
-  /// Whether the area is the whole mesh.
-  virtual bool whole_mesh() const = 0;
   /// Typical edge length, working coordinates.
   virtual double usual_edge() const = 0;
   // Results are ascending: the order of the space-filling curve after compaction.

@@ -12,7 +12,6 @@
 #include "simplify/operations/face_removal.h"
 #include "simplify/operations/smoothing.h"
 #include "simplify/schedule/fitting_sweeps.h"
-#include "simplify/schedule/refused_stars.h"
 #include "simplify/schedule/selection.h"
 #include "simplify/tuning/tuning.h"
 
@@ -35,28 +34,19 @@ void collapse_block(Engine& engine, float limit, std::size_t target) {
 /// Flips and smooths tets that are still bad.
 void flip_and_smooth_block(Engine& engine, float limit) {
   const EditableMesh& mesh = engine.mesh();
-  BlockRules rules = engine.rules;
-  rules.acceptance.min_gain = TunedLoop::min_gain;
-  RefusedStars refused(mesh);
   engine.runner().tets(
       bad_tets(mesh, limit),
       [&](Workspace& ws, const TetSnapshot& item, int) {
         // A neighbour's operation may have improved the tet since it was listed.
         if (!exists(mesh, item) || mesh.quality(item.tet) > limit) return Outcome::stale;
-        for (int f = 0; f < 4; ++f) {
-          // The worse of both tets tries the same.
-          const Index other = mesh.neighbour(item.tet, f);
-          if (other != no_index && mesh.quality(other) < mesh.quality(item.tet)) continue;
-          if (remove_face(ws, rules, item.tet, f, basic_reach) == Outcome::done) return Outcome::done;
-        }
+        for (int f = 0; f < 4; ++f)
+          if (remove_face(ws, engine.rules, item.tet, f, basic_reach) == Outcome::done) return Outcome::done;
         for (int e = 0; e < 6; ++e)
-          if (remove_edge(ws, rules, item.tet, e, basic_reach) == Outcome::done) return Outcome::done;
+          if (remove_edge(ws, engine.rules, item.tet, e, basic_reach) == Outcome::done) return Outcome::done;
         for (Index p : item.points) {
-          if (refused.holds(p)) continue;
           Outcome o = ws.gather(p);
-          if (o == Outcome::done) o = smooth(ws, rules);
+          if (o == Outcome::done) o = smooth(ws, engine.rules);
           if (ws.count(Operation::smooth, o) == Outcome::done) return o;
-          if (lies_within_star(o)) refused.add(p);
         }
         return Outcome::no_candidate;
       },

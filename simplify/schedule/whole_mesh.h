@@ -13,7 +13,6 @@ class WholeMesh final : public ImprovementArea {
   /// \param engine must outlive this object.
   explicit WholeMesh(Engine& engine) : mesh_(engine.mesh()), rules_(engine.rules) {}
   std::size_t tet_count() const override { return mesh_.live_tets(); }
-  bool whole_mesh() const override { return true; }
   double usual_edge() const override { return rules_.objective.quality.ideal_edge; }
   std::vector<TetSnapshot> bad_tets(float limit) override { return tetwright::bad_tets(mesh_, limit); }
   std::vector<Index> bad_points(float limit) override { return tetwright::bad_points(mesh_, limit); }

@@ -175,8 +175,6 @@ struct SimplifyTuning {
   /// Insertion of points.
   struct Insertion {
     /// Min factor on the worst quality for a new point, since it costs tets.
-    /// Min factor on the worst Quality^3 of these flips and moves: with 1, half of the moves gain less than
-    /// this, for a quarter of the iteration's time.
     static constexpr float min_gain = 1.05f;
     /// Max number of tets that a cavity gains by growing (Klingner & Shewchuk 2007, section 3.3): bounds the
     /// time and the write set of one insertion.
@@ -291,7 +289,6 @@ struct SimplifyTuning {
     /// are wasted. Working on all bad tets from 10 times the target on doubles the time of the last
     /// iterations for the same result after improvement.
     static constexpr double flip_percent = 40, flips_below = 2;
-    static constexpr float min_gain = 1.05f;
     /// Fraction of the tets that a stalled iteration must remove to be repeated with larger bounds alone,
     /// above `flips_below`. With 1 (flips of all bad tets whenever collapses stall) 60 % of a loop went into
     /// flips where thin labels stall it from 9 times the target on; with 0.02 its result is the same.
