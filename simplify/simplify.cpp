@@ -247,8 +247,8 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     if (!tuned) return;
     engine.input_samples().keep_surface(options.surface, options.tolerance > 0);
     engine.throw_if_stopped();
+    // From here on the mesh is changed, so time is asked for in the loop only.
     merge_points(engine, options);
-    engine.throw_if_stopped();
     engine.compact();
   });
   const double build = seconds_since(start);

@@ -29,7 +29,7 @@ class BulkMerger {
  public:
   BulkMerger(const EditableMesh& mesh, const PointMerging& options)
       : mesh_(mesh), options_(options), max_squared_(options.max_distance * options.max_distance) {}
-  /// Finds the moves; false if there are none, or the mesh is not embedded.
+  /// Finds the moves. False if a tet is not positive or the boundary meets itself.
   bool run();
   /// The remaining tets, in order, with their regions.
   void tets(std::vector<Tet>& tets, std::vector<RegionId>& regions) const;
@@ -44,6 +44,8 @@ class BulkMerger {
     merged      ///< moves, unless its moves were undone
   };
 
+  /// Finds the pieces of the surface: faces that share points which may move.
+  void find_pieces();
   /// Lists the faces, and those at each point.
   void list_faces();
   /// Makes the points of smooth surfaces `undecided`, and lists them and the points inside materials. All
@@ -97,6 +99,7 @@ class BulkMerger {
   /// Undoes the moves that change the topology of the surface. False if there were such moves.
   bool topology_is_kept();
   bool clusters_are_contractible();
+  bool pieces_remain();
   bool edges_are_kept();
   /// Undoes the moves of points of regions whose volume changes too much. False if there were such moves.
   bool volumes_are_kept();
@@ -107,6 +110,7 @@ class BulkMerger {
   const PointMerging& options_;
   const double max_squared_;
   std::vector<InterfaceFace> faces_;
+  std::vector<Index> pieces_;          ///< by face: one of its piece
   NumberBuckets faces_at_;             ///< by point
   NumberBuckets tets_at_;              ///< by point that may move
   std::vector<std::uint32_t> keys_;    ///< by point: random

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "common/geometry/self_intersection.h"
+#include "common/mesh/disjoint_sets.h"
 #include "common/parallel/bucket_sort.h"
+#include "common/parallel/parallel_sort.h"
 #include "simplify/mesh/bulk_merger.h"
 #include "simplify/tuning/tuning.h"
 #include "tetwright/resources.h"
@@ -105,7 +107,35 @@ bool BulkMerger::edges_are_kept() {
   return wrong.empty();
 }
 
-bool BulkMerger::topology_is_kept() { return clusters_are_contractible() && edges_are_kept(); }
+void BulkMerger::find_pieces() {
+  DisjointSets sets(faces_.size());
+  for (const Index p : smooth_)
+    for (const Index code : faces_at_[p]) sets.unite(faces_at_[p].front() / 3, code / 3);
+  pieces_.resize(faces_.size());
+  for (Index f = 0; f < faces_.size(); ++f) pieces_[f] = sets.root(f);
+}
+
+bool BulkMerger::pieces_remain() {
+  // A closed piece may collapse onto an edge: two discs and the ring of triangles between them.
+  std::vector<std::uint8_t> remains(faces_.size(), 0);
+  parallel_for(0, faces_.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t f = begin; f < end; ++f)
+      // Relaxed: the flags are read after the loop.
+      if (!vanishes(image(faces_[f].ids)))
+        std::atomic_ref<std::uint8_t>(remains[pieces_[f]]).store(1, std::memory_order_relaxed);
+  });
+  const std::vector<Index> lost = parallel_collect<Index>(
+      0, faces_.size(), Grains::slots, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+        for (std::size_t f = begin; f < end; ++f)
+          if (!remains[pieces_[f]]) out.push_back(static_cast<Index>(f));
+      });
+  for (const Index f : lost) undo_all(faces_[f].ids);
+  return lost.empty();
+}
+
+bool BulkMerger::topology_is_kept() {
+  return clusters_are_contractible() && edges_are_kept() && pieces_remain();
+}
 
 bool BulkMerger::volumes_are_kept() {
   // Six times the volumes before and after, as sums over the faces, in parts of fixed size.

@@ -58,13 +58,13 @@ void MeshBuilder::build(TetMesh&& input) {
 
 void MeshBuilder::replace_tets(std::vector<Tet>&& tets, std::vector<RegionId>&& regions,
                                const std::vector<InterfaceFace>& faces) {
-  mesh_.tets_ = {};
+  std::vector<TetRecord>().swap(mesh_.tets_);
   reserve_touched(mesh_.tets_, tets.size());
   mesh_.tets_.resize(tets.size());
   parallel_for(0, tets.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) mesh_.tets_[i] = {tets[i], {}};
   });
-  tets = {};
+  std::vector<Tet>().swap(tets);
   mesh_.regions_ = std::move(regions);
   mesh_.qualities_.assign(mesh_.tets_.size(), 0);
   mesh_.live_ = mesh_.tets_.size();
@@ -293,8 +293,7 @@ void MeshBuilder::set_faces(const std::vector<InterfaceFace>& faces) {
           }
         known.fetch_add(found, std::memory_order_relaxed);
       });
-  if (known.load() != 2 * faces.size())
-    throw InputError(name_, 0, "its faces changed while its points were merged");
+  TETWRIGHT_CHECK(known.load() == 2 * faces.size());
   mesh_.interface_patches_ = FacePatches(inner.begin(), inner.end());
 }
 

@@ -9,6 +9,7 @@
 
 #include "common/geometry/predicates.h"
 #include "common/parallel/bucket_sort.h"
+#include "common/parallel/parallel_sort.h"
 #include "common/random.h"
 #include "simplify/mesh/mesh_builder.h"
 #include "simplify/tuning/tuning.h"
@@ -288,6 +289,7 @@ bool BulkMerger::run() {
   });
   list_faces();
   classify_points();
+  find_pieces();
   list_stars();
   merge(smooth_);
   do repair_faces();

@@ -10,8 +10,9 @@ namespace tetwright {
 
 /// Bounds for merge_points(). Lengths in working coordinates.
 struct PointMerging {
-  double max_distance;  ///< of a point from the neighbour onto which it moves, and of edges of surfaces
-  /// Max distance of the three points of a face from the plane of the face that replaces it.
+  double max_distance;  ///< of a point from the neighbour onto which it moves; length of edges of moved faces
+  /// Max distance of the three points of a face from the plane of the face that replaces it. Points all of
+  /// whose faces vanish are not tested.
   double max_deviation;
   std::uint64_t seed = 1;  ///< selects the points that stay
   /// Min cosine of the angle between the normal of each face at a point of a surface and their mean; other
@@ -29,10 +30,12 @@ struct PointMerging {
 ///
 /// - Every point, edge and triangle of the new surfaces comes from a contractible part of the old ones, so
 ///   they are homeomorphic (Youngs 1948): clusters have Euler characteristic 1; the edges between two
-///   clusters and the triangles that join these edges form a path; no two triangles become the same.
+///   clusters and the triangles that join these edges form a path; no two triangles become the same; no piece
+///   of the surface vanishes as a whole.
 /// - No two triangles of the new boundary intersect, and all remaining tets are positive. They cover each
-///   point as often as the boundary winds around it, so once if it is inside: tets do not overlap, interfaces
-///   do not meet, and neighbours across a face remain neighbours.
+///   point as often as the boundary winds around it. If no body of the mesh has moved over another one, which
+///   only bodies nearer to each other than `max_deviation` can do, that is once: tets do not overlap,
+///   interfaces do not meet, and neighbours across a face remain neighbours.
 ///
 /// Moves that violate this are undone, and those of a region whose volume would change by more than
 /// Merging::max_volume_change. Parallel; the result does not depend on the number of threads.
