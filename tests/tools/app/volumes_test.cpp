@@ -72,7 +72,9 @@ TEST_F(Volumes, PrepareSaysFirstWhatItWillTake) {
     std::size_t count = 0;
     for (std::size_t at = err.find(expected); at != std::string::npos; at = err.find(expected, at + 1))
       ++count;
-    if (count > 0) EXPECT_EQ(err.rfind("tetwright: about ", 0), 0u) << err;
+    if (count > 0) {
+      EXPECT_EQ(err.rfind("tetwright: about ", 0), 0u) << err;
+    }
     return count;
   };
   EXPECT_EQ(lines("prepare --target-tets 200 "), 1u);
