@@ -20,6 +20,7 @@
 #include "simplify/schedule/tet_count.h"
 #include "simplify/schedule/tuned_schedule.h"
 #include "simplify/schedule/whole_mesh.h"
+#include "simplify/tuning/merging_tuning.h"
 #include "simplify/tuning/tuning.h"
 #include "tetwright/error.h"
 #include "tetwright/mesh_quality.h"
@@ -33,7 +34,7 @@ namespace {
 using Closing = SimplifyTuning::Closing;
 using Features = SimplifyTuning::Features;
 using Improve = SimplifyTuning::Improve;
-using Merging = SimplifyTuning::Merging;
+using Merging = MergingTuning;
 using Memory = SimplifyTuning::Memory;
 using TimeLimit = SimplifyTuning::TimeLimit;
 

@@ -11,6 +11,7 @@
 #include "common/parallel/bucket_sort.h"
 #include "common/parallel/parallel_sort.h"
 #include "simplify/mesh/bulk_merger.h"
+#include "simplify/tuning/merging_tuning.h"
 #include "simplify/tuning/tuning.h"
 #include "tetwright/resources.h"
 
@@ -19,7 +20,7 @@ namespace tetwright {
 namespace {
 
 using Grains = SimplifyTuning::Grains;
-using Merging = SimplifyTuning::Merging;
+using Merging = MergingTuning;
 
 /// An edge of a triangle of the new surface, from face `face` of the old one.
 struct EdgeUse {

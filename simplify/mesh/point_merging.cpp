@@ -12,6 +12,7 @@
 #include "common/parallel/parallel_sort.h"
 #include "common/random.h"
 #include "simplify/mesh/mesh_builder.h"
+#include "simplify/tuning/merging_tuning.h"
 #include "simplify/tuning/tuning.h"
 #include "tetwright/resources.h"
 
@@ -20,7 +21,7 @@ namespace tetwright {
 namespace {
 
 using Grains = SimplifyTuning::Grains;
-using Merging = SimplifyTuning::Merging;
+using Merging = MergingTuning;
 
 }  // namespace
 

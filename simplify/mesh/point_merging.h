@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "simplify/mesh/editable_mesh.h"
-#include "simplify/tuning/tuning.h"
+#include "simplify/tuning/merging_tuning.h"
 
 namespace tetwright {
 
@@ -17,10 +17,10 @@ struct PointMerging {
   std::uint64_t seed = 1;  ///< selects the points that stay
   /// Min cosine of the angle between the normal of each face at a point of a surface and their mean; other
   /// points stay.
-  double min_smooth_cosine = SimplifyTuning::Merging::min_smooth_cosine;
-  double min_turn_cosine = SimplifyTuning::Merging::min_turn_cosine;  ///< by which the normal of a face turns
+  double min_smooth_cosine = MergingTuning::min_smooth_cosine;
+  double min_turn_cosine = MergingTuning::min_turn_cosine;  ///< by which the normal of a face turns
   /// Min ratio of twice the area of a face to the square of its longest edge.
-  double min_face_shape = SimplifyTuning::Merging::min_face_shape;
+  double min_face_shape = MergingTuning::min_face_shape;
 };
 
 /// Coarsens a mesh in bulk, several times faster than collapse by collapse: points of a maximal independent
@@ -34,16 +34,17 @@ struct PointMerging {
 ///   of the surface vanishes as a whole.
 /// - No two triangles of the new boundary intersect, and all remaining tets are positive. They cover each
 ///   point as often as the boundary winds around it. If no body of the mesh has moved over another one, which
-///   only bodies nearer to each other than `max_deviation` can do, that is once: tets do not overlap,
-///   interfaces do not meet, and neighbours across a face remain neighbours.
+///   is not tested and can happen where they are about as near to each other as `max_deviation`, that is
+///   once: tets do not overlap, interfaces do not meet, and neighbours across a face remain neighbours.
 ///
 /// Moves that violate this are undone, and those of a region whose volume would change by more than
-/// Merging::max_volume_change. Parallel; the result does not depend on the number of threads.
+/// MergingTuning::max_volume_change. Parallel; the result does not depend on the number of threads.
 /// Links, incident tets and patches are set anew; points that moved are dead, and all other points keep their
 /// numbers and positions.
 ///
-/// \return false if nothing was changed, since a tet is not positive (exact sign) or the boundary meets
-/// itself \pre no operation has run
+/// \return false if nothing was changed: a tet is not positive (exact sign), or the boundary meets itself
+///
+/// \pre no operation has run
 bool merge_points(EditableMesh& mesh, const PointMerging& options);
 
 }  // namespace tetwright

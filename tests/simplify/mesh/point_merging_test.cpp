@@ -43,6 +43,15 @@ std::optional<TetMesh> merged(const TetMesh& mesh, const PointMerging& options) 
   return after;
 }
 
+/// Merges points with several seeds: at least half of the tets must vanish, and nothing else.
+void expect_kept(const TetMesh& mesh, PointMerging options, std::uint64_t seeds) {
+  for (options.seed = 1; options.seed <= seeds; ++options.seed) {
+    const std::optional<TetMesh> after = merged(mesh, options);
+    ASSERT_TRUE(after);
+    EXPECT_LT(2 * after->tets.size(), mesh.tets.size());
+  }
+}
+
 std::map<MaterialTag, double> volumes(const TetMesh& mesh) {
   std::map<MaterialTag, double> sums;
   for (std::size_t i = 0; i < mesh.tets.size(); ++i) {
@@ -157,13 +166,7 @@ TEST(PointMerging, KeepsHandlesOfFewEdges) {
           if (within(y, 5) && (leg || top)) return 1;
           return std::nullopt;
         });
-    for (std::uint64_t seed = 1; seed <= 30; ++seed) {
-      PointMerging options = lax;
-      options.seed = seed;
-      const std::optional<TetMesh> after = merged(mesh, options);
-      ASSERT_TRUE(after);
-      EXPECT_LT(2 * after->tets.size(), mesh.tets.size());
-    }
+    expect_kept(mesh, lax, 30);
   }
 }
 
@@ -179,13 +182,7 @@ TEST(PointMerging, KeepsSmallBodiesAndCavities) {
     if (small && z >= n + 2) return 1;  // nine bodies
     return std::nullopt;
   });
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    PointMerging options = lax;
-    options.seed = seed;
-    const std::optional<TetMesh> after = merged(mesh, options);
-    ASSERT_TRUE(after);
-    EXPECT_LT(2 * after->tets.size(), mesh.tets.size());
-  }
+  expect_kept(mesh, lax, 10);
 }
 
 /// Adds a ball of 23 points: two poles, two rings of ten, the centre.
@@ -221,12 +218,7 @@ TEST(PointMerging, KeepsSmallBalls) {
   for (Tet& t : mesh.tets)
     if (orient3d(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]], mesh.points[t[3]]) < 0)
       std::swap(t[0], t[1]);
-  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const std::optional<TetMesh> after =
-        merged(mesh, {.max_distance = 2.3, .max_deviation = 0.15, .seed = seed});
-    ASSERT_TRUE(after);
-    EXPECT_LT(2 * after->tets.size(), mesh.tets.size());
-  }
+  expect_kept(mesh, {.max_distance = 2.3, .max_deviation = 0.15}, 10);
 }
 
 TEST(PointMerging, BoundsDeviationAndLengths) {
@@ -294,7 +286,7 @@ TEST(PointMerging, KeepsVolumes) {
   EXPECT_LT(after->tets.size(), mesh.tets.size());
   const std::map<MaterialTag, double> was = volumes(mesh), is = volumes(*after);
   for (const auto& [tag, volume] : was)
-    EXPECT_NEAR(is.at(tag), volume, SimplifyTuning::Merging::max_volume_change * volume);
+    EXPECT_NEAR(is.at(tag), volume, MergingTuning::max_volume_change * volume);
 }
 
 TEST(PointMerging, IsTheSameForAnyNumberOfThreads) {
