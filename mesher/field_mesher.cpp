@@ -74,12 +74,7 @@ TetMesh to_input_units(CutMesh cut, const MaterialField& field) {
   return mesh;
 }
 
-/// A flag for each region of the field: 1 if it is among `regions`.
-std::vector<std::uint8_t> regions_there(const MaterialField& field, const std::vector<RegionIndex>& regions) {
-  std::vector<std::uint8_t> there(field.regions().size(), 0);
-  for (const RegionIndex r : regions) there[r] = 1;
-  return there;
-}
+/// Likewise.
 std::vector<std::uint8_t> regions_there(const MaterialField& field,
                                         const std::vector<NearestRegion>& regions) {
   std::vector<std::uint8_t> there(field.regions().size(), 0);
@@ -181,6 +176,21 @@ ThickenedWallsReport thickened_report(const ThickenedWalls& left, const GridFram
           frame.to_input(left.place)};
 }
 
+std::vector<std::uint8_t> regions_there(const MaterialField& field, const std::vector<RegionIndex>& regions) {
+  std::vector<std::uint8_t> there(field.regions().size(), 0);
+  for (const RegionIndex r : regions) there[r] = 1;
+  return there;
+}
+
+void set_mesh(CutMesh cut, std::shared_ptr<const MaterialField> field, DenseMesh& result) {
+  result.mesh = to_input_units(std::move(cut), *field);
+  result.reference = field;
+  if (field->volume() && std::any_of(result.mesh.interfaces.begin(), result.mesh.interfaces.end(),
+                                     [](const InterfaceTriangle& t) { return t.patch != 0; }))
+    result.reference = std::make_shared<CutOffSurface>(result.mesh, field);
+  result.field = std::move(field);
+}
+
 FieldMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<MortonKey> interface_voxels,
                      RefinementRegions finer, const MesherOptions& options, const MemoryModel& memory,
                      MesherReport report, Stages& stages,
@@ -260,16 +270,10 @@ FieldMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
     made.parts = {sheeted, std::move(cut.regions)};
     cut.regions = std::move(materials);
   }
-  result.mesh = to_input_units(std::move(cut), *field);
+  set_mesh(std::move(cut), std::move(field), result);
   report.seconds_cut = stages.seconds();
   report.loops_cut = stages.loops();
   stages.throw_if_stopped();
-
-  result.reference = field;
-  if (field->volume() && std::any_of(result.mesh.interfaces.begin(), result.mesh.interfaces.end(),
-                                     [](const InterfaceTriangle& t) { return t.patch != 0; }))
-    result.reference = std::make_shared<CutOffSurface>(result.mesh, field);
-  result.field = std::move(field);
   result.report = std::move(report);
   return made;
 }

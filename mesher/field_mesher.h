@@ -2,12 +2,14 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "mesher/cut/cutting.h"
 #include "mesher/cut/sheet_faces.h"
 #include "mesher/cut/thin_wall_recovery.h"
 #include "mesher/domain/material_field.h"
@@ -64,6 +66,13 @@ struct FieldMesh {
   DenseMesh dense;
   std::optional<SheetParts> parts;  ///< if the field has sheets
 };
+
+/// Transforms a mesh of the field to input units, with its interfaces and its reference surface.
+/// \param cut lattice units
+void set_mesh(CutMesh cut, std::shared_ptr<const MaterialField> field, DenseMesh& result);
+
+/// A flag for each region of the field: 1 if it is among `regions`.
+std::vector<std::uint8_t> regions_there(const MaterialField& field, const std::vector<RegionIndex>& regions);
 
 /// Meshes a field: builds the octree and the lattice, moves points, cuts tets, and transforms the result to
 /// input units.

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <utility>
 
+#include "mesher/brick_mesher.h"
 #include "mesher/features/border_creases.h"
 #include "mesher/field_mesher.h"
 #include "mesher/labels/label_field.h"
@@ -10,6 +13,7 @@
 #include "mesher/mesh_estimate.h"
 #include "mesher/tuning/cell_tuning.h"
 #include "mesher/tuning/domain_tuning.h"
+#include "mesher/volume_field.h"
 #include "tetwright/error.h"
 #include "tetwright/mesher.h"
 
@@ -22,21 +26,6 @@ Vec3 sides(const LabelInput& labels) {
   Vec3 lengths = labels.directions.colwise().norm();
   for (int a = 0; a < 3; ++a) lengths[a] *= labels.size[a];
   return lengths;
-}
-
-void validate_materials_left(const LabelInput& labels, const std::vector<std::uint8_t>& there) {
-  if (std::count(there.begin() + 1, there.end(), 1) == 0)
-    throw NothingToMeshError(
-        labels.file +
-        ": the labels are smaller than a cell; use a higher resolution or a smaller voxel size");
-  for (std::size_t r = 1; r < there.size(); ++r)
-    if (!there[r])
-      throw InputError(
-          labels.file, 0,
-          "nothing is left of '" + labels.materials[r - 1].name + "' (" +
-              std::to_string(labels.materials[r - 1].voxels) +
-              " voxels) in cells this large; use a smaller --voxel-size, or merge such islands by a "
-              "larger --min-voxels");
 }
 
 }  // namespace
@@ -55,10 +44,8 @@ double cell_size(const LabelInput& labels, const MesherOptions& options) {
                                      : wanted;
 }
 
-DenseMesh mesh_labels(const LabelInput& labels, const MesherOptions& options, Progress* progress) {
-  MesherReport report;
-  Stages stages(progress);
-  stages.begin("signed distances");
+VolumeField make_volume_field(const LabelInput& labels, const MesherOptions& options, MesherReport& report,
+                              Progress* progress) {
   report.cell_size = cell_size(labels, options);
   report.resolution = static_cast<int>(std::ceil(longest_side(labels) / report.cell_size - 0.5));
   if (options.keep_outside)
@@ -71,22 +58,76 @@ DenseMesh mesh_labels(const LabelInput& labels, const MesherOptions& options, Pr
   ThinLabels thin;
   if (!options.uniform) thin = find_thin_labels(labels, voxels, progress);
   validate_estimate(estimate_mesh(labels, options, ThinCells()));
-  const std::shared_ptr<const MaterialField> field =
-      LabelField::make(labels, voxels, options.keep_outside, progress);
-  drop_redundant_cells(thin.finer, *field, thin.island_levels, largest_redundant_cell(labels, voxels),
+  VolumeField made;
+  made.field = LabelField::make(labels, voxels, options.keep_outside, progress);
+  drop_redundant_cells(thin.finer, *made.field, thin.island_levels, largest_redundant_cell(labels, voxels),
                        progress);
   report.estimate = estimate_mesh(labels, options, count_thin_cells(labels, voxels, thin.finer));
-  validate_estimate(report.estimate);
   for (const ThinPart& p : thin.too_thin)
-    report.thin_parts.push_back({p.region == outside_region ? "" : field->regions()[p.region].name, p.places,
-                                 voxels.to_input(p.first), true});
+    report.thin_parts.push_back({p.region == outside_region ? "" : made.field->regions()[p.region].name,
+                                 p.places, voxels.to_input(p.first), true});
   if (!options.keep_outside) report.creases = border_creases(labels);
+  made.finer = std::move(thin.finer);
+  return made;
+}
+
+void validate_materials_left(const LabelInput& labels, const std::vector<std::uint8_t>& there) {
+  if (std::count(there.begin() + 1, there.end(), 1) == 0)
+    throw NothingToMeshError(
+        labels.file +
+        ": the labels are smaller than a cell; use a higher resolution or a smaller voxel size");
+  for (std::size_t r = 1; r < there.size(); ++r)
+    if (!there[r])
+      throw InputError(
+          labels.file, 0,
+          "nothing is left of '" + labels.materials[r - 1].name + "' (" +
+              std::to_string(labels.materials[r - 1].voxels) +
+              " voxels) in cells this large; use a smaller --voxel-size, or merge such islands by a "
+              "larger --min-voxels");
+}
+
+namespace {
+
+DenseMesh mesh_by_bricks(const LabelInput& labels, VolumeField volume, const MesherOptions& options,
+                         MesherReport& report, Stages& stages) {
+  if (options.uniform)
+    throw UsageError("bricks consist of the cells of an octree; leave out --uniform, or --bricks");
+  if (options.brick_cells < CellTuning::Bricks::min_side ||
+      !std::has_single_bit(unsigned(options.brick_cells)))
+    throw UsageError("bricks must have a power of two of cells along a side, at least " +
+                     std::to_string(CellTuning::Bricks::min_side) + ", not " +
+                     std::to_string(options.brick_cells));
+  stages.begin("bricks");
+  const BrickMesher mesher(std::move(volume), options, report, stages.progress());
+  CutMesh cut = mesher.mesh_all(options.brick_cells << report.refinement, report, stages.progress());
+  validate_materials_left(labels, regions_there(*mesher.field(), cut.regions));
+  report.seconds_move = stages.seconds();
+  report.loops_move = stages.loops();
+  DenseMesh result;
+  stages.begin("cutting");
+  set_mesh(std::move(cut), mesher.field(), result);
+  report.seconds_cut = stages.seconds();
+  report.loops_cut = stages.loops();
+  result.report = std::move(report);
+  return result;
+}
+
+}  // namespace
+
+DenseMesh mesh_labels(const LabelInput& labels, const MesherOptions& options, Progress* progress) {
+  MesherReport report;
+  Stages stages(progress);
+  stages.begin("signed distances");
+  VolumeField volume = make_volume_field(labels, options, report, progress);
+  validate_estimate(report.estimate);
   report.seconds_sdf = stages.seconds();
   report.loops_sdf = stages.loops();
+  if (options.brick_cells > 0) return mesh_by_bricks(labels, std::move(volume), options, report, stages);
 
   stages.begin("octree");
-  return mesh_field(field, field->interface_voxels(), std::move(thin.finer), options, label_memory(labels),
-                    std::move(report), stages,
+  std::vector<MortonKey> interface_voxels = volume.field->interface_voxels();
+  return mesh_field(std::move(volume.field), std::move(interface_voxels), std::move(volume.finer), options,
+                    label_memory(labels), std::move(report), stages,
                     [&](const std::vector<std::uint8_t>& there) { validate_materials_left(labels, there); })
       .dense;
 }

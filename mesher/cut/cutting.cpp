@@ -334,6 +334,7 @@ CutMesh cut_lattice(LabelledLattice lattice) {
   struct CutTet {
     Tet tet;
     RegionIndex region;
+    std::uint8_t owned;
   };
   // The pieces cut from each part of the lattice replace it in memory.
   std::vector<std::vector<CutTet>> parts(lattice.tets.piece_count());
@@ -346,14 +347,15 @@ CutMesh cut_lattice(LabelledLattice lattice) {
         const Tet& t = tets[i];
         RegionIndex region;
         const Fate f = fate(lattice, t, region);
-        if (f == Fate::whole) out.push_back({t, region});
+        const std::uint8_t owned = lattice.owns(part * TetList::piece_size + i);
+        if (f == Fate::whole) out.push_back({t, region, owned});
         if (f != Fate::cut) continue;
         const int n = cut_tet_well(cut_case(lattice, t), pieces, [&](int a, int b) -> const Vec3& {
           return cut_points[cuts.edge(t[a], t[b])];
         });
         for (int p = 0; p < n; ++p) {
           if (pieces[p].region == outside_region && !lattice.keep_outside) continue;
-          CutTet piece{{}, pieces[p].region};
+          CutTet piece{{}, pieces[p].region, owned};
           for (int k = 0; k < 4; ++k) {
             std::array<int, 4> c;
             const int corners = corners_of(pieces[p].vertices[k], c);
@@ -375,10 +377,13 @@ CutMesh cut_lattice(LabelledLattice lattice) {
   CutMesh mesh;
   mesh.tets.reserve(size);
   mesh.regions.reserve(size);
+  const bool in_brick = !lattice.owned.empty();
+  if (in_brick) mesh.owned.reserve(size);
   for (std::vector<CutTet>& part : parts) {
     for (const CutTet& c : part) {
       mesh.tets.push_back(c.tet);
       mesh.regions.push_back(c.region);
+      if (in_brick) mesh.owned.push_back(c.owned);
     }
     std::vector<CutTet>().swap(part);
   }

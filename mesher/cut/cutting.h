@@ -14,6 +14,7 @@ struct CutMesh {
   std::vector<Tet> tets;
   std::vector<RegionIndex> regions;
   std::vector<std::uint8_t> on_interface;  ///< 1 for cuts and for points moved onto an interface
+  std::vector<std::uint8_t> owned;         ///< by tet: LabelledLattice::owns(); empty: all
 };
 
 /// The smallest solid angle among the pieces of a tet that become part of the mesh, as the tangent of half

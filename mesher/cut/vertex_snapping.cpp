@@ -2,18 +2,22 @@
 #include "mesher/cut/vertex_snapping.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <iterator>
 #include <numeric>
 #include <optional>
 #include <span>
 
+#include "common/geometry/morton.h"
 #include "common/parallel/parallel_sort.h"
+#include "common/random.h"
 #include "common/tolerances.h"
 #include "mesher/cut/cutting.h"
 #include "mesher/cut/independent_rounds.h"
 #include "mesher/cut/last_tries.h"
 #include "mesher/cut/link_topology.h"
+#include "mesher/cut/scattered_groups.h"
 #include "mesher/tuning/cut_tuning.h"
 #include "tetwright/mesh_quality.h"
 
@@ -22,52 +26,6 @@ namespace tetwright {
 namespace {
 
 using Snapping = CutTuning::Snapping;
-
-/// A hash that scatters neighbouring points in the processing order, so that groups processed concurrently
-/// rarely share points.
-std::uint32_t scattered(Index i) {
-  std::uint32_t h = i * 0x9e3779b9u;
-  h ^= h >> 15;
-  h *= 0x85ebca6bu;
-  return h ^ h >> 13;
-}
-
-/// Splits a list into groups of neighbouring items of equal priority and scatters the groups within each
-/// priority.
-/// \param priority must not decrease along the list; nearby items of equal priority should be close to each
-///   other in the list
-/// \return the indices at which groups start, and the end
-template <class Priority>
-std::vector<std::size_t> scatter_groups(std::vector<Index>& items, Priority&& priority) {
-  struct Group {
-    std::size_t first, last;
-    std::uint32_t key;
-  };
-  std::vector<Group> groups;
-  for (std::size_t i = 0, j; i < items.size(); i = j) {
-    for (j = i + 1;
-         j < items.size() && j - i < Snapping::group_size && priority(items[j]) == priority(items[i]);)
-      ++j;
-    groups.push_back({i, j, scattered(items[i])});
-  }
-  for (std::size_t i = 0, j; i < groups.size(); i = j) {
-    const auto now = priority(items[groups[i].first]);
-    for (j = i; j < groups.size() && priority(items[groups[j].first]) == now;) ++j;
-    std::sort(groups.begin() + static_cast<std::ptrdiff_t>(i),
-              groups.begin() + static_cast<std::ptrdiff_t>(j),
-              [](const Group& a, const Group& b) { return a.key < b.key; });
-  }
-  std::vector<Index> scattered_items;
-  scattered_items.reserve(items.size());
-  std::vector<std::size_t> starts{0};
-  for (const Group& g : groups) {
-    scattered_items.insert(scattered_items.end(), items.begin() + static_cast<std::ptrdiff_t>(g.first),
-                           items.begin() + static_cast<std::ptrdiff_t>(g.last));
-    starts.push_back(scattered_items.size());
-  }
-  items.swap(scattered_items);
-  return starts;
-}
 
 /// A point too close to a cut, and its target.
 struct Candidate {
@@ -90,6 +48,7 @@ class Mover {
       : lattice_(lattice), field_(field), rounds_(lattice), progress_(progress) {}
 
   SnapCounts run() {
+    find_blocks();
     find_candidates();
     SnapCounts counts;
     counts.candidates = candidates_.size();
@@ -115,6 +74,30 @@ class Mover {
  private:
   StarMap::Tets star(Index p) const { return lattice_.stars.tets(p); }
 
+  /// Sets the groups by block of a volume, before any point is moved.
+  void find_blocks() {
+    if (!field_.volume()) return;
+    const std::vector<Index>& near = lattice_.stars.points();
+    const double side = std::ldexp(Snapping::block_side, field_.refinement());  // lattice units
+    std::vector<std::uint64_t>& blocks = blocks_.emplace().blocks;
+    blocks.resize(near.size());
+    parallel_for(0, near.size(), CutGrains::candidates, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t s = begin; s < end; ++s) {
+        const Vec3& at = lattice_.positions[near[s]];
+        blocks[s] = mixed_bits(morton_encode(static_cast<int>(at[0] / side), static_cast<int>(at[1] / side),
+                                             static_cast<int>(at[2] / side)));
+      }
+    });
+  }
+  /// Groups `items`, whose points are `point(item)`; see tetwright::scatter_groups().
+  template <class Priority, class PointOf>
+  std::vector<std::size_t> scatter_groups(std::vector<Index>& items, Priority&& priority,
+                                          PointOf&& point) const {
+    const auto slot = [&](Index i) { return lattice_.stars.slot(point(i)); };
+    return blocks_ ? tetwright::scatter_groups(items, priority, slot, *blocks_)
+                   : tetwright::scatter_groups(items, priority, slot, GroupsOfNumbers());
+  }
+
   /// The i-th candidate to be tried.
   const Candidate& candidate(Index i) const { return candidates_[by_rank_[i]]; }
 
@@ -124,12 +107,14 @@ class Mover {
   /// the candidates for which it returned false, in the order of their points.
   template <class Priority, class Work>
   std::vector<Index> attempt(std::vector<Index> list, Priority&& priority, Work&& work) {
-    const std::vector<std::size_t> starts = scatter_groups(list, priority);
+    const std::vector<std::size_t> starts =
+        scatter_groups(list, priority, [&](Index i) { return candidate(i).point; });
     std::vector<Index> points(list.size());
     for (std::size_t k = 0; k < list.size(); ++k) points[k] = candidate(list[k]).point;
     std::vector<std::uint8_t> done(list.size(), 0);
-    run_groups(points, starts,
-               [&](std::size_t k, FieldSampler& sampler) { done[k] = work(list[k], sampler); });
+    run_groups(points, starts, [&](std::size_t k, FieldSampler& sampler) -> bool {
+      return done[k] = work(list[k], sampler);
+    });
     std::vector<Index> left;
     for (std::size_t k = 0; k < list.size(); ++k)
       if (!done[k]) left.push_back(list[k]);
@@ -137,22 +122,34 @@ class Mover {
     return left;
   }
 
-  /// Calls `work(k, sampler)` for each index k of `points`; groups that share a star point run in order.
+  /// Calls `work(k, sampler)` for each index k of `points`, which returns true if it has changed the point;
+  /// groups that share a star point run in order.
   template <class Work>
   void run_groups(std::span<const Index> points, std::span<const std::size_t> starts, Work&& work) {
+    ++pass_;
     rounds_.run(
         points, starts,
         [&](std::span<const Index> groups) {
           const std::unique_ptr<FieldSampler> owned = field_.sampler();
           FieldSampler& sampler = *owned;
           for (Index g : groups)
-            for (std::size_t k = starts[g]; k < starts[g + 1]; ++k) work(k, sampler);
+            for (std::size_t k = starts[g]; k < starts[g + 1]; ++k)
+              if (work(k, sampler)) record(points[k]);
         },
         [&](std::size_t done) {
           if (!progress_) return;
           progress_->throw_if_stopped();
           progress_->update(static_cast<double>(done) / static_cast<double>(starts.size()));
         });
+  }
+
+  /// Adds the current state of a point to its history.
+  void record(Index p) {
+    if (lattice_.histories.empty()) return;
+    std::uint64_t& history = lattice_.histories[lattice_.stars.slot(p)];
+    history = mixed_bits(history ^ pass_);
+    for (const double coordinate : lattice_.positions[p])
+      history = mixed_bits(history ^ std::bit_cast<std::uint64_t>(coordinate));
   }
 
   /// True for points whose region the mesh must keep.
@@ -396,13 +393,14 @@ class Mover {
         for (Index v : lattice_.tets[t])
           if (lattice_.stars.lists(v)) points.push_back(v);
       parallel_sort_unique(points);
-      const std::vector<std::size_t> starts = scatter_groups(points, one_priority);
+      const std::vector<std::size_t> starts = scatter_groups(points, one_priority, [](Index p) { return p; });
       std::vector<std::uint8_t> moved(points.size(), 0);
-      run_groups(points, starts, [&](std::size_t k, FieldSampler& sampler) {
+      run_groups(points, starts, [&](std::size_t k, FieldSampler& sampler) -> bool {
         const Index p = points[k];
-        if (nothing_new(p, tries)) return;
+        if (nothing_new(p, tries)) return false;
         moved[k] = improve_star(p, sampler);
         tries.record(lattice_.stars.slot(p), k, moved[k]);
+        return moved[k];
       });
       tries.end_sweep(points.size());
       // Pieces of all other tets are what they were.
@@ -470,8 +468,10 @@ class Mover {
   const MaterialField& field_;
   IndependentRounds rounds_;
   Progress* progress_;
-  std::vector<Candidate> candidates_;  ///< in the order of their points
-  std::vector<Index> by_rank_;         ///< indices into candidates_, by priority, then point
+  std::optional<GroupsByBlock> blocks_;  ///< of a volume
+  std::uint64_t pass_ = 0;               ///< number of calls of run_groups()
+  std::vector<Candidate> candidates_;    ///< in the order of their points
+  std::vector<Index> by_rank_;           ///< indices into candidates_, by priority, then point
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "mesher/tuning/domain_tuning.h"
 
@@ -11,11 +12,9 @@ namespace tetwright {
 namespace {
 
 /// Chooses the root cells, and rounds the numbers of cells up to whole ones.
-void take_cells(GridFrame& frame, const std::array<int, 3>& needed, bool uniform) {
-  if (!uniform) {
-    const int longest = *std::max_element(needed.begin(), needed.end());
-    while ((8 << frame.root_level) < longest) ++frame.root_level;
-  }
+void take_cells(GridFrame& frame, const std::array<int, 3>& needed, int max_root_level) {
+  const int longest = *std::max_element(needed.begin(), needed.end());
+  while (frame.root_level < max_root_level && (8 << frame.root_level) < longest) ++frame.root_level;
   const int root = 1 << frame.root_level;
   for (int a = 0; a < 3; ++a) frame.cells[a] = (needed[a] + root - 1) / root * root;
 }
@@ -30,7 +29,7 @@ GridFrame make_grid_frame(const Vec3& low, const Vec3& high, double cell_size, b
   for (int a = 0; a < 3; ++a)
     needed[a] =
         static_cast<int>(std::ceil((high[a] - low[a]) / cell_size)) + 2 * DomainTuning::Frames::margin;
-  take_cells(frame, needed, uniform);
+  take_cells(frame, needed, uniform ? 0 : std::numeric_limits<int>::max());
   frame.box = frame.cells;
   if (centred)
     for (int a = 0; a < 3; ++a) {
@@ -48,7 +47,7 @@ GridFrame make_box_frame(const Vec3& corner, const Eigen::Matrix3d& edges, doubl
     frame.box[a] = std::max(1, static_cast<int>(std::round(edges.col(a).norm() / cell_size)));
     frame.axes.col(a) = edges.col(a) / (frame.box[a] * cell_size);
   }
-  take_cells(frame, frame.box, uniform);
+  take_cells(frame, frame.box, uniform ? 0 : DomainTuning::Frames::max_volume_root);
   return frame;
 }
 

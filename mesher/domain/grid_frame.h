@@ -9,6 +9,18 @@
 
 namespace tetwright {
 
+/// A box of cells of a lattice: from `low` up to `high`, exclusive.
+struct CellBox {
+  std::array<int, 3> low{}, high{};
+
+  bool contains(const std::array<int, 3>& cell) const {
+    for (int a = 0; a < 3; ++a)
+      if (cell[a] < low[a] || cell[a] >= high[a]) return false;
+    return true;
+  }
+  bool operator==(const CellBox&) const = default;
+};
+
 /// Position and size of the grid of finest cells.
 ///
 /// All of mesher/ works in *grid coordinates*: the unit is one finest cell, signed distances and corners of
@@ -49,8 +61,9 @@ GridFrame make_grid_frame(const Vec3& low, const Vec3& high, double cell_size, b
                           bool centred = false);
 
 /// A frame that fills a parallelepiped with whole cells, as close to `cell_size` along each axis as that
-/// permits.
-/// \param edges of the parallelepiped, as columns, right-handed; input units
+/// permits. Root cells have a bounded size (DomainTuning::Frames::max_volume_root), so that a part of the
+/// volume determines the octree in it. \param edges of the parallelepiped, as columns, right-handed; input
+/// units
 GridFrame make_box_frame(const Vec3& corner, const Eigen::Matrix3d& edges, double cell_size, bool uniform);
 
 /// A frame of the same box, refined: cells of 1/2^levels the size, root cells of the same size.

@@ -158,8 +158,10 @@ std::vector<ExpectedSheet> expected_sheets(const MesherInput& input) {
   const LabelledComplex& complex = *input.complex;
   std::vector<ExpectedSheet> expected;
   for (std::uint32_t k = 0; k < input.sheets.size(); ++k) {
-    TetMesh mesh{.points = complex.points};
-    ExpectedSheet sheet{.file = input.sheets[k].file};
+    TetMesh mesh;
+    mesh.points = complex.points;
+    ExpectedSheet sheet;
+    sheet.file = input.sheets[k].file;
     mesh.patch_groups[{{1, 1}, 0}] = input.sheets[k].group;
     double largest = -1;
     for (const LabelledComplex::SheetFace& f : complex.sheets) {

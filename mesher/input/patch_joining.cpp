@@ -51,7 +51,9 @@ struct OpenSurface {
 };
 
 OpenSurface measured(std::size_t number, CleanedSurface cleaned) {
-  OpenSurface own{.number = number, .cleaned = std::move(cleaned)};
+  OpenSurface own;
+  own.number = number;
+  own.cleaned = std::move(cleaned);
   const std::vector<Vec3>& points = own.cleaned.points;
   for (const Vec3& p : points) own.box.extend(p);
   for (const auto& [a, b, c] : own.cleaned.triangles)

@@ -150,8 +150,10 @@ void LabelledLattice::free_stars() {
 }
 
 LabelledLattice label_lattice(LatticePoints points, std::vector<NearestRegion> nearest, TetList tets,
-                              std::size_t region_count, bool keep_outside, std::size_t* isolated_vertices) {
+                              std::size_t region_count, bool keep_outside, std::size_t* isolated_vertices,
+                              std::vector<std::uint8_t> owned) {
   LabelledLattice lattice;
+  lattice.owned = std::move(owned);
   lattice.keep_outside = keep_outside;
   lattice.positions = std::move(points.positions);
   lattice.is_centre = std::move(points.is_centre);
@@ -166,11 +168,15 @@ LabelledLattice label_lattice(LatticePoints points, std::vector<NearestRegion> n
 
   const std::vector<std::uint8_t> near = points_near_interfaces(regions, tets);
   lattice.tets = std::move(tets);
-  if (!keep_outside)
-    lattice.tets.keep_if([&](const Tet& t) {
-      return std::any_of(t.begin(), t.end(),
-                         [&](Index v) { return near[v] || regions[v] != outside_region; });
-    });
+  const auto contributes = [&](const Tet& t) {
+    return std::any_of(t.begin(), t.end(), [&](Index v) { return near[v] || regions[v] != outside_region; });
+  };
+  if (!keep_outside) {
+    if (lattice.owned.empty())
+      lattice.tets.keep_if(contributes);
+    else
+      lattice.tets.keep_if(contributes, lattice.owned);
+  }
   std::vector<Index> near_points;
   for (Index i = 0; i < count; ++i)
     if (near[i]) near_points.push_back(i);

@@ -31,12 +31,19 @@ class LabelledLattice {
   std::vector<std::uint8_t> is_on;
   TetList tets;   ///< positive
   StarMap stars;  ///< of all points of tets with more than one region
+  /// By slot of `stars`: hash of the changes of the point's state so far; empty: not recorded. See SeamPoint.
+  std::vector<std::uint64_t> histories;
+  /// By tet: 1 for those that belong to the brick to be meshed, see lattice_tets(); empty: all.
+  std::vector<std::uint8_t> owned;
   bool keep_outside = false;
   bool has_rims = false;     ///< see mark_rims()
   std::array<int, 3> box{};  ///< lattice units
 
   /// The faces of the box that a point is on, see tetwright::box_faces().
   unsigned box_faces(Index p) const { return tetwright::box_faces(positions[p], box); }
+
+  /// Whether a tet belongs to the brick to be meshed.
+  bool owns(std::size_t tet) const { return owned.empty() || owned[tet]; }
 
   /// The current region of a point, or on_interface.
   RegionIndex region(Index p) const { return is_on[p] ? on_interface : first_region[p]; }
@@ -86,8 +93,10 @@ class LabelledLattice {
 /// \param nearest region of each point
 /// \param region_count number of regions
 /// \param isolated_vertices receives their number; may be null
+/// \param owned LabelledLattice::owned, for `tets`
 LabelledLattice label_lattice(LatticePoints points, std::vector<NearestRegion> nearest, TetList tets,
-                              std::size_t region_count, bool keep_outside, std::size_t* isolated_vertices);
+                              std::size_t region_count, bool keep_outside, std::size_t* isolated_vertices,
+                              std::vector<std::uint8_t> owned = {});
 
 /// Marks points as if on an interface, so that no cut is made, where parts of a region meet that no sheet
 /// separates: at the rims of the zones around sheets. Exempt are points with neighbours from which a sheet or

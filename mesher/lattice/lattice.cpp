@@ -45,9 +45,10 @@ HalfCells face_centre(const LeafBox& box, int axis, bool upper) {
   return p;
 }
 
-/// True if the lower or upper face normal to `axis` is on the box.
-bool on_box(const Octree& octree, const LeafBox& box, int axis, bool upper) {
-  return upper ? box.low[axis] + box.side == 2 * octree.cells[axis] : box.low[axis] == 0;
+/// True if the lower or upper face normal to `axis` is on the window.
+bool on_window(const Octree& octree, const LeafBox& box, int axis, bool upper) {
+  return upper ? box.low[axis] + box.side == 2 * octree.window.high[axis]
+               : box.low[axis] == 2 * octree.window.low[axis];
 }
 
 HalfCells middle(const HalfCells& a, const HalfCells& b) {
@@ -74,7 +75,7 @@ class TetEmitter {
   Index find(const HalfCells& p) const { return points_.find(morton_encode(p), centre_); }
 
   void face(int axis, bool upper) {
-    if (on_box(octree_, box_, axis, upper)) {
+    if (on_window(octree_, box_, axis, upper)) {
       around(axis, upper, find(face_centre(box_, axis, upper)));
       return;
     }
@@ -160,7 +161,7 @@ LatticePoints lattice_points(const Octree& octree) {
           for (int k = 0; k < 8; ++k) out.push_back(morton_encode(box.corner(k)) << 1);
           for (int axis = 0; axis < 3; ++axis)
             for (bool upper : {false, true})
-              if (on_box(octree, box, axis, upper))
+              if (on_window(octree, box, axis, upper))
                 out.push_back(morton_encode(face_centre(box, axis, upper)) << 1);
         }
         // Most duplicates are within a chunk; a quarter of the keys remains.
@@ -211,16 +212,24 @@ std::vector<std::uint8_t> far_outside(const std::vector<NearestRegion>& regions,
 }
 
 TetList lattice_tets(const Octree& octree, const LatticePoints& points,
-                     const std::vector<std::uint8_t>* unwanted, int unwanted_level) {
+                     const std::vector<std::uint8_t>* unwanted, int unwanted_level, const CellBox* brick,
+                     std::vector<std::uint8_t>* owned) {
   std::vector<std::vector<Tet>> parts((octree.size() + LatticeGrains::leaves - 1) / LatticeGrains::leaves);
+  std::vector<std::vector<std::uint8_t>> flags(brick ? parts.size() : 0);
   parallel_for(0, parts.size(), 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t part = first; part < last; ++part) {
       TetEmitter emitter(octree, points, unwanted, unwanted_level, parts[part]);
       for (std::size_t i = part * LatticeGrains::leaves;
-           i < std::min(octree.size(), (part + 1) * LatticeGrains::leaves); ++i)
+           i < std::min(octree.size(), (part + 1) * LatticeGrains::leaves); ++i) {
         emitter.leaf(i);
+        if (brick) flags[part].resize(parts[part].size(), brick->contains(morton_decode(octree.leaf(i).key)));
+      }
     }
   });
+  if (brick) {
+    owned->clear();
+    for (const std::vector<std::uint8_t>& f : flags) owned->insert(owned->end(), f.begin(), f.end());
+  }
   return TetList(std::move(parts));
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <span>
 #include <utility>
 #include <vector>
@@ -43,6 +44,16 @@ class TetList {
         std::erase_if(pieces_[p], [&](const Tet& t) { return !keep(t); });
     });
     *this = TetList(std::move(pieces_));
+  }
+
+  /// keep_if() for the list and for a flag of each of its tets.
+  template <class Keep>
+  void keep_if(Keep&& keep, std::vector<std::uint8_t>& flags) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < size_; ++i)
+      if (keep((*this)[i])) flags[kept++] = flags[i];
+    flags.resize(kept);
+    keep_if(keep);
   }
 
   /// A copy of all tets.

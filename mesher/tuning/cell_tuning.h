@@ -36,6 +36,14 @@ struct CellTuning {
     static constexpr double min_refined = 0.125;
   };
 
+  /// Bricks of a volume.
+  struct Bricks {
+    /// Voxels around a brick whose points are moved with its own. Moves farther away rarely affect it.
+    static constexpr int halo = 8;
+    /// Min cells along a side: with 16, a brick is meshed with seven times its own volume.
+    static constexpr int min_side = 16;
+  };
+
   /// Cells of labels for a target number of tets.
   struct LabelCells {
     /// Dense tets per face between two materials, as large as a squared cell; half as many per face to the

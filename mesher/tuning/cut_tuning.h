@@ -36,8 +36,8 @@ struct CutTuning {
     /// Number of steps per edge in which distances are compared, because all points along a flat face have
     /// nearly the same distance. Must fit in a byte.
     static constexpr double distance_steps = 32;
-    /// Number of points that one thread processes consecutively.
-    static constexpr std::size_t group_size = 16;
+    /// Side of the blocks whose points one thread processes consecutively, voxels: some 16 points.
+    static constexpr double block_side = 2;
     /// Sweeps that improve stars. The first one improves most; later ones improve stars whose neighbours had
     /// to move first.
     static constexpr int sweeps = 4;

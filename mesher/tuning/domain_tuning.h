@@ -10,6 +10,10 @@ struct DomainTuning {
     /// their stars reach two cells from the surface; the third cell keeps the faces of the box away from
     /// them.
     static constexpr int margin = 3;
+    /// Max level of root cells in segmented volumes. A cell that is split affects others up to twice its size
+    /// away; with 2^3 voxels, 16 voxels around a part of a volume determine its octree. Larger cells would
+    /// save three tets of a hundred in a solid body of 256^3 voxels.
+    static constexpr int max_volume_root = 3;
     /// Cells along the longest side. Fewer hardly resolve a shape; a ball at the max resolution has 1.5e9
     /// dense tets, nearly as many as can be numbered.
     static constexpr int min_resolution = 4, max_resolution = 4096;

@@ -53,6 +53,15 @@ void flip_and_smooth_block(Engine& engine, float limit) {
       [] { return false; });
 }
 
+/// Sets the rules with which a loop begins.
+void begin_loop(BlockRules& rules) {
+  rules.objective.kind = Objective::Kind::paper;
+  rules.objective.quality.needle_angle = TunedLoop::needle_angle;
+  rules.error.max = TunedLoop::first_error_edges * rules.objective.quality.ideal_edge;
+  rules.acceptance.worse_floor = TunedLoop::annealing_floor;
+  rules.collapse.distance_weight = TunedLoop::distance_weight;
+}
+
 /// Runs the block iteration down to a target.
 ///
 /// \param counted whether the target is the final one, not an intermediate stage towards as few tets as the
@@ -67,11 +76,8 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
   const auto first_tets = static_cast<double>(counted ? engine.first_tets() : mesh.live_tets());
   const double log_first = portable_log(std::max(first_tets / target, 1 + tolerance::at_target));
   const double max_error = Schedules::max_useful_error * std::max(1.0, options.gamma / 10);
-  rules.objective.kind = Objective::Kind::paper;
-  rules.objective.quality.needle_angle = TunedLoop::needle_angle;
-  double& error = rules.error.max.emplace(TunedLoop::first_error_edges * rules.objective.quality.ideal_edge);
-  rules.acceptance.worse_floor = TunedLoop::annealing_floor;
-  rules.collapse.distance_weight = TunedLoop::distance_weight;
+  begin_loop(rules);
+  double& error = *rules.error.max;
   // Rounded up, since for small targets the slack is less than one tet.
   rules.count.min = static_cast<std::size_t>(std::ceil(target * (1 - Closing::slack)));
   engine.rate_all();
@@ -141,6 +147,25 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
 }
 
 }  // namespace
+
+void run_light_schedule(Engine& engine, std::size_t target, int max_iterations) {
+  const EditableMesh& mesh = engine.mesh();
+  BlockRules& rules = engine.rules;
+  begin_loop(rules);
+  rules.count.min = target;
+  engine.rate_all();
+  double percent = Schedules::percent_step;
+  for (int i = 0; i < max_iterations && mesh.live_tets() > target; ++i) {
+    engine.compact_if_sparse();
+    RoundRecorder::Round round(engine.recorder(), "simplify", *rules.error.max);
+    const auto before = static_cast<double>(mesh.live_tets());
+    collapse_block(engine, quality_cutoff(mesh, percent), target);
+    round.finish();
+    if (percent >= 100 && static_cast<double>(mesh.live_tets()) > (1 - TunedLoop::min_removed) * before)
+      break;
+    percent = std::min(100.0, percent + Schedules::percent_step);
+  }
+}
 
 void run_tuned_schedule(Engine& engine, const SimplifyOptions& options, std::size_t loop_target) {
   EditableMesh& mesh = engine.mesh();

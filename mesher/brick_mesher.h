@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "mesher/cut/cutting.h"
+#include "mesher/domain/grid_frame.h"
+#include "mesher/lattice/seam.h"
+#include "mesher/volume_field.h"
+#include "tetwright/mesher.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/progress.h"
+
+namespace tetwright {
+
+/// The part of a volume's dense mesh that belongs to a brick.
+struct BrickMesh {
+  CellBox brick;
+  int halo = 0;  ///< finest cells around the brick whose points were moved with its own
+  CutMesh mesh;  ///< the brick's tets, in the order of the whole mesh
+  /// 1 for each point that a tet of another brick has, too.
+  std::vector<std::uint8_t> shared;
+  Seam seam;
+  std::size_t leaves = 0, lattice_tets = 0, isolated_vertices = 0;  ///< of the brick
+};
+
+/// Meshes a segmented volume brick by brick: the bricks' tets together are those of the volume meshed whole,
+/// with the same coordinates to the last bit, for bricks of any size and position.
+///
+/// Everything that decides about a tet is near it, but no bound tells how near, since each moved point makes
+/// room for its neighbours. A brick is therefore meshed with a halo. Seams tell whether it sufficed
+/// (unconfirmed_bricks()); if not, bricks are meshed again with a larger one.
+///
+/// Immutable after construction; bricks may be meshed concurrently. The field of the whole volume is in
+/// memory.
+class BrickMesher {
+ public:
+  /// \param options without MesherOptions::uniform
+  /// \param report receives the refinement
+  /// \throws Interrupted
+  BrickMesher(VolumeField volume, const MesherOptions& options, MesherReport& report, Progress* progress);
+
+  /// The frame of the lattice. Bricks consist of its root cells.
+  const GridFrame& frame() const { return field_->frame(); }
+  const std::shared_ptr<const MaterialField>& field() const { return field_; }
+  /// Edge of a root cell, finest cells.
+  int root() const { return 1 << frame().root_level; }
+  /// Meshes a brick.
+  /// \param brick finest cells, whole root cells; the last ones along an axis end at frame().cells
+  /// \param halo finest cells, whole root cells
+  /// \param progress may be null
+  /// \throws Interrupted
+  BrickMesh mesh(const CellBox& brick, int halo, Progress* progress) const;
+  /// Halo that nearly always suffices, finest cells.
+  int usual_halo() const;
+  /// Meshes the whole volume by bricks, one after another. The mesh is the same for any size of bricks,
+  /// including the order of points and tets.
+  /// \param side of bricks, finest cells: a power of two, at least a root cell
+  /// \param report receives the counts of bricks and lattice tets
+  /// \throws Interrupted
+  CutMesh mesh_all(int side, MesherReport& report, Progress* progress) const;
+
+ private:
+  MesherOptions options_;
+  std::shared_ptr<const MaterialField> field_;  ///< refined
+  RefinementRegions finer_;
+  std::vector<MortonKey> interface_voxels_;
+};
+
+/// The bricks, by index, whose halo may not have sufficed: those that read a point of another brick which has
+/// another history there, and that other one.
+/// \param bricks all bricks of a volume
+std::vector<std::size_t> unconfirmed_bricks(const std::vector<BrickMesh>& bricks);
+
+}  // namespace tetwright

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "mesher/domain/material_field.h"
+#include "mesher/domain/refinement_regions.h"
+#include "tetwright/mesher.h"
+#include "tetwright/mesher_input.h"
+
+namespace tetwright {
+
+/// What determines the mesh of a segmented volume.
+struct VolumeField {
+  std::shared_ptr<const MaterialField> field;  ///< unrefined
+  RefinementRegions finer;                     ///< cells that are halved because labels are thin
+};
+
+/// Computes the distances of the labels and finds the cells that are halved.
+/// \param report receives cell size, estimate, thin parts and creases
+/// \throws UsageError for options that conflict with the labels
+/// \throws OutputError if the mesh would be too large for the memory even without halved cells
+/// \throws Interrupted
+VolumeField make_volume_field(const LabelInput& labels, const MesherOptions& options, MesherReport& report,
+                              Progress* progress);
+
+/// Checks that the mesh has every label.
+/// \param there by region: 0 if nothing of it is left
+/// \throws NothingToMeshError if nothing is left at all
+/// \throws InputError naming a label of which nothing is left
+void validate_materials_left(const LabelInput& labels, const std::vector<std::uint8_t>& there);
+
+}  // namespace tetwright
