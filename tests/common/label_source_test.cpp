@@ -74,7 +74,7 @@ TEST(LabelSource, TheFirstErrorIsReportedForAnyNumberOfThreads) {
 
 TEST(LabelSource, VolumesThatAreTooLargeForMemoryAreRefused) {
   const ComputedSource huge({2147483647, 2147483647, 4}, {64, 64, 64}, 4);
-  EXPECT_EQ(huge.grid().voxels(), 4u * 2147483647u * 2147483647u);
+  EXPECT_EQ(huge.grid().voxels(), 4 * std::uint64_t{2147483647} * 2147483647);
   std::vector<MaterialTag> labels(2 * 3 * 4);
   huge.read({2147483645, 2147483644, 0}, {2147483647, 2147483647, 4}, labels);
   EXPECT_EQ(labels[0], 2147483645 ^ 2147483644);

@@ -5,14 +5,11 @@
 
 #include <algorithm>
 #include <array>
-#include <map>
-#include <memory>
-#include <string>
 #include <thread>
 #include <vector>
 
-#include "common/io/encodings/file_ranges.h"
 #include "common/random.h"
+#include "tests/common/io/memory_files.h"
 #include "tests/common/io/volume_bytes.h"
 #include "tetwright/label_source.h"
 
@@ -73,34 +70,6 @@ inline void expect_labels(const LabelSource& source, const LabelVolume& expected
     readers.emplace_back([&, t] { wrong[t] = wrong_boxes(source, expected, t + 1); });
   for (std::thread& reader : readers) reader.join();
   for (const int n : wrong) EXPECT_EQ(n, 0);
-}
-
-/// A file in memory.
-class MemoryRanges final : public ByteRanges {
- public:
-  MemoryRanges(std::string name, const std::string& bytes) : name_(std::move(name)), bytes_(bytes) {}
-  const std::string& name() const override { return name_; }
-  std::uint64_t size() const override { return bytes_.size(); }
-  void read(std::uint64_t offset, char* to, std::size_t n) const override {
-    check_range(offset, n);
-    bytes_.copy(to, n, static_cast<std::size_t>(offset));
-  }
-
- private:
-  std::string name_;
-  const std::string& bytes_;
-};
-
-/// Files in memory by their paths.
-using MemoryFiles = std::map<std::string, std::string>;
-
-/// Opener of files in memory, which must outlive it.
-inline auto opener_of(const MemoryFiles& files) {
-  return [&files](const std::string& path) -> std::unique_ptr<ByteRanges> {
-    const auto found = files.find(path);
-    if (found == files.end()) return nullptr;
-    return std::make_unique<MemoryRanges>(path, found->second);
-  };
 }
 
 }  // namespace tetwright

@@ -250,7 +250,7 @@ TEST(Zarr, DamagedShardsAreRefused) {
   };
   const std::string& shard = files.at(key);
   EXPECT_NE(message_of("short").find("the index of a shard"), std::string::npos);
-  EXPECT_NE(message_of(shard.substr(1)).find("checksum"), std::string::npos);
+  EXPECT_NE(message_of(shard.substr(1)).find("its zstd data are damaged"), std::string::npos);
   EXPECT_NE(message_of(shard.substr(0, shard.size() - 1)).find("checksum"), std::string::npos);
   std::string index(8 * 16, '\0');
   for (const char huge : {'\x7f', '\xff'}) {
