@@ -194,8 +194,12 @@ def meshes():
     tifffile.imwrite(f"{folder}/ball.tif", ball)
     with h5py.File(f"{folder}/ball.h5", "w") as file:
         file["a/labels"] = ball
+    slices = pathlib.Path(folder, "ball_slices")
+    slices.mkdir()
+    for number, page in enumerate(ball):
+        tifffile.imwrite(slices / f"{number}.tif", page)
     wanted = None
-    for name in ("ball.nrrd", "ball.zarr", "ball.tif", "ball.h5", "ball.h5:/a/labels"):
+    for name in ("ball.nrrd", "ball_slices", "ball.zarr", "ball.tif", "ball.h5", "ball.h5:/a/labels"):
         out = pathlib.Path(folder, "ball.vtu")
         done = subprocess.run([TETWRIGHT, "prepare", f"{folder}/{name}", "-o", out, "--target-tets", "500", "--quiet"],
                               capture_output=True, text=True, check=False)

@@ -56,12 +56,35 @@ void write_labels(const std::string& file, const std::string& out) {
   std::printf("%d\n", source->in_memory() ? 1 : 0);
 }
 
+void count_labels(const std::string& file) {
+  const auto source = open_label_source(file, {.cache_bytes = 1 << 16});
+  const VoxelIndex block = source->block(), size = source->grid().size;
+  std::uint64_t labelled = 0;
+  for (int z = 0; z < size[2]; z += block[2])
+    for (int y = 0; y < size[1]; y += block[1])
+      for (int x = 0; x < size[0]; x += block[0]) {
+        const VoxelIndex high{std::min(x + block[0], size[0]), std::min(y + block[1], size[1]),
+                              std::min(z + block[2], size[2])};
+        std::vector<MaterialTag> labels(static_cast<std::size_t>(high[0] - x) *
+                                        static_cast<std::size_t>(high[1] - y) *
+                                        static_cast<std::size_t>(high[2] - z));
+        source->read({x, y, z}, high, labels);
+        labelled += static_cast<std::uint64_t>(
+            std::count_if(labels.begin(), labels.end(), [](MaterialTag label) { return label != 0; }));
+      }
+  std::printf("%d %d %d voxels, %llu labelled\n", size[0], size[1], size[2],
+              static_cast<unsigned long long>(labelled));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 3) return 2;
+  if (argc != 2 && argc != 3) return 2;
   try {
-    write_labels(argv[1], argv[2]);
+    if (argc == 3)
+      write_labels(argv[1], argv[2]);
+    else
+      count_labels(argv[1]);
   } catch (const tetwright::Error& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 3;

@@ -20,6 +20,8 @@ struct LabelGrid {
   Vec3 origin = Vec3::Zero();  ///< centre of voxel (0, 0, 0), input units
   /// Column a is the step from one voxel to the next along axis a, input units. The matrix has rank 3.
   Eigen::Matrix3d directions = Eigen::Matrix3d::Identity();
+  /// True if the file gives no spacing although its format could, so that 1 is a guess.
+  bool spacing_assumed = false;
   /// Coordinate system that the file names: "left-posterior-superior", "right-anterior-superior" and so on,
   /// or empty. Readers do not convert between them.
   std::string space;

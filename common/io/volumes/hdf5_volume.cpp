@@ -271,6 +271,8 @@ std::unique_ptr<LabelSource> open_hdf5_volume(const std::string& path, const std
   grid.size = checked_size(size, opened.name, 0, max_source_voxels);
   if (const auto spacing = element_size(opened.dataset.id()))
     grid.directions = Vec3((*spacing)[2], (*spacing)[1], (*spacing)[0]).asDiagonal();
+  else
+    grid.spacing_assumed = true;
   check_geometry(grid, opened.name);
   ChunkLayout layout;
   layout.format.type = opened.type.type;

@@ -16,7 +16,7 @@ namespace tetwright {
 struct TiffPage {
   std::uint32_t width = 0, height = 0;
   VoxelType type = VoxelType::uint8;
-  /// Of strips (as wide as the page) or tiles.
+  /// Size of strips (as wide as the page) or tiles.
   std::uint32_t piece_width = 0, piece_height = 0;
   bool tiled = false;
 

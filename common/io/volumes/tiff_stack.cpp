@@ -219,7 +219,7 @@ void check_one_channel(const std::string& path, const char* what, double n) {
                      ", and each voxel needs one label; save one of them as a stack");
 }
 
-/// Spacing of OME-TIFF, or std::nullopt if the description is none of it.
+/// Spacing of OME-TIFF, or std::nullopt if the description has none.
 std::optional<Vec3> ome_spacing(const std::string& path, const std::string& text) {
   pugi::xml_document document;
   if (text.find("<OME") == std::string::npos || !document.load_string(text.c_str())) return std::nullopt;
@@ -227,6 +227,7 @@ std::optional<Vec3> ome_spacing(const std::string& path, const std::string& text
   if (!pixels) return std::nullopt;
   check_one_channel(path, "channels", pixels.attribute("SizeC").as_double());
   check_one_channel(path, "times", pixels.attribute("SizeT").as_double());
+  if (!pixels.attribute("PhysicalSizeX")) return std::nullopt;
   Vec3 spacing;
   std::string unit;
   for (int k = 0; k < 3; ++k) {
@@ -240,22 +241,27 @@ std::optional<Vec3> ome_spacing(const std::string& path, const std::string& text
   return spacing;
 }
 
-Vec3 spacing_of(const std::string& path, const TiffDescription& first) {
-  const auto step = [](double resolution, double unit) {
-    if (!std::isfinite(resolution) || !(resolution > 0) || resolution == 1) return 1.0;
-    return (unit > 0 ? unit : 1.0) / resolution;
+/// Spacing of the voxels, or std::nullopt if the file says nothing of it.
+std::optional<Vec3> spacing_of(const std::string& path, const TiffDescription& first) {
+  const auto known = [](double resolution) {
+    return std::isfinite(resolution) && resolution > 0 && resolution != 1;
   };
-  if (const std::optional<Vec3> ome = ome_spacing(path, first.text)) return *ome;
+  const auto step = [&](double resolution, double unit) {
+    return known(resolution) ? (unit > 0 ? unit : 1.0) / resolution : 1.0;
+  };
+  if (const std::optional<Vec3> ome = ome_spacing(path, first.text)) return ome;
   const std::optional<double> between = imagej_number(first.text, "spacing");
   if (first.text.starts_with("ImageJ=") || between) {
     check_one_channel(path, "channels", imagej_number(first.text, "channels").value_or(1));
     check_one_channel(path, "times", imagej_number(first.text, "frames").value_or(1));
+    if (!between && !known(first.resolution_x)) return std::nullopt;
     // ImageJ takes the amount, too.
     const double z = between && *between != 0 ? std::fabs(*between) : 1;
-    return {step(first.resolution_x, 0), step(first.resolution_y, 0), z};
+    return Vec3(step(first.resolution_x, 0), step(first.resolution_y, 0), z);
   }
+  if (!known(first.resolution_x)) return std::nullopt;
   const double x = step(first.resolution_x, first.unit_mm);
-  return {x, step(first.resolution_y, first.unit_mm), x};
+  return Vec3(x, step(first.resolution_y, first.unit_mm), x);
 }
 
 /// ImageJ writes stacks of more than 4 GB as one page, which other pages without an entry follow.
@@ -306,7 +312,10 @@ std::unique_ptr<LabelSource> open_tiff_stack(const std::string& path, std::size_
   const std::array<std::int64_t, 3> size{first.width, first.height,
                                          static_cast<std::int64_t>(stack.pages.size())};
   grid.size = checked_size(size, path, 0, max_source_voxels);
-  grid.directions = spacing_of(stack.files[0], stack.description).asDiagonal();
+  if (const std::optional<Vec3> spacing = spacing_of(stack.files[0], stack.description))
+    grid.directions = spacing->asDiagonal();
+  else
+    grid.spacing_assumed = true;
   check_geometry(grid, path);
   if (std::optional<RawVolume> raw = follow_first_page(stack, grid)) return open_raw_volume(std::move(*raw));
   ChunkLayout layout;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/volumes/volume_formats.h"
 
+#include <algorithm>
 #include <array>
 #include <filesystem>
 
@@ -72,6 +73,9 @@ VolumePath volume_path(const std::string& path) {
       return {path.substr(0, colon), path.substr(colon + 1), extension};
     }
   VolumePath out{path, {}, extension_of(path)};
+  if (std::any_of(formats_of_volumes.begin(), formats_of_volumes.end(),
+                  [&](const VolumeFormat& format) { return out.extension == format.extension; }))
+    return out;
   if (is_in_zarr(path)) {
     out.extension = ".zarr";
   } else if (std::error_code error; std::filesystem::is_directory(path, error)) {

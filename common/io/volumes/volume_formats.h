@@ -19,8 +19,8 @@ struct VolumePath {
   std::string extension;  ///< of the format, in lower case; empty: none is known
 };
 
-/// Splits FILE.h5:/DATASET, and finds the format of folders: zarr arrays, also inside FOLDER.zarr, and TIFF
-/// files. Other paths have the format of their extension.
+/// Splits FILE.h5:/DATASET. Other paths have the format of their extension, or if that is none of a volume,
+/// that of a folder: zarr arrays, also inside FOLDER.zarr, or TIFF files.
 VolumePath volume_path(const std::string& path);
 
 /// A format of segmented volumes. It is read as bytes, or opened by name.

@@ -250,7 +250,8 @@ std::unique_ptr<LabelSource> open_zarr(const std::string& path, std::size_t cach
   std::array<std::int64_t, 3> size;
   for (std::size_t k = 0; k < 3; ++k) size[k] = array.shape[spatial[k]];
   grid.size = checked_size(size, opened.folder, 0, max_source_voxels);
-  if (!opened.placement.scale.empty()) {
+  grid.spacing_assumed = opened.placement.scale.empty();
+  if (!grid.spacing_assumed) {
     if (opened.placement.scale.size() != axes)
       throw InputError(opened.folder, 0,
                        "the array has " + std::to_string(axes) + " axes, and the scale of its image " +

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tetwright/io.h"
 
+#include "common/io/volumes/volume_formats.h"
 #include "tests/common/io/expect_error.h"
 #include "tests/common/io/file_test.h"
 #include "tests/common/io/tricky_meshes.h"
@@ -39,6 +40,9 @@ TEST_F(Formats, VolumesAndTheirCompoundExtensions) {
   for (const char* name :
        {"a.gz", "a.vtu.gz", "nii.gz", "a.nii.gz.x", "zarr", "a.zarr.x", "a.h5:x", "a.h5/x"})
     EXPECT_EQ(file_kind(name), FileKind::unknown) << name;
+  EXPECT_EQ(file_kind("a.zarr/b.ply"), FileKind::surface);
+  EXPECT_EQ(volume_path("a.zarr/b.nrrd").extension, ".nrrd");
+  EXPECT_EQ(volume_path("a.zarr/b.c").extension, ".zarr");
   EXPECT_EQ(file_kind("a.nrrd", FileUse::write), FileKind::volume);
   EXPECT_EQ(file_kind("a.nii.gz", FileUse::write), FileKind::unknown);
   EXPECT_EQ(known_extensions(FileKind::volume),

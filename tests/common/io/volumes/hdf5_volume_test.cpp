@@ -122,6 +122,8 @@ TEST_F(Hdf5Volumes, SpacingAndAxesOfIlastik) {
   set_text(channels, "axistags", R"({"axes":[{"key":"z"},{"key":"y"},{"key":"x"},{"key":"c"}]})");
   close();
   EXPECT_EQ(Vec3(open("/a")->grid().directions.diagonal()), Vec3(1, 2, 4));
+  EXPECT_FALSE(open("/a")->grid().spacing_assumed);
+  EXPECT_TRUE(open("/b")->grid().spacing_assumed);
   expect_labels(*open("/b"), numbered_volume(size));
   const auto source = open("/c");
   ASSERT_EQ(source->grid().size, (VoxelIndex{11, 13, 19}));

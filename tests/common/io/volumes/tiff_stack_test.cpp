@@ -189,7 +189,8 @@ TEST_F(TiffStacks, SpacingFromDescriptions) {
     return Vec3(open_tiff_stack(path("a.tif"), cache_bytes)->grid().directions.diagonal());
   };
   EXPECT_EQ(spacing({}), Vec3(1, 1, 1));
-  EXPECT_EQ(spacing({.resolution = 1}), Vec3(1, 0.5, 1));
+  EXPECT_TRUE(open_tiff_stack(path("a.tif"), cache_bytes)->grid().spacing_assumed);
+  EXPECT_EQ(spacing({.resolution = 1}), Vec3(1, 1, 1));
   EXPECT_EQ(spacing({.resolution = 4}), Vec3(0.25, 0.125, 0.25));
   EXPECT_EQ(spacing({.resolution = 4, .resolution_unit = RESUNIT_CENTIMETER}), Vec3(2.5, 1.25, 2.5));
   EXPECT_EQ(spacing({.resolution = 4, .resolution_unit = RESUNIT_INCH}), Vec3(6.35, 3.175, 6.35));
@@ -198,6 +199,7 @@ TEST_F(TiffStacks, SpacingFromDescriptions) {
             Vec3(0.25, 0.125, 3.5));
   EXPECT_EQ(spacing({.description = "ImageJ=1.53t\nimages=2\nunit=micron\n", .resolution = 4}),
             Vec3(0.25, 0.125, 1));
+  EXPECT_FALSE(open_tiff_stack(path("a.tif"), cache_bytes)->grid().spacing_assumed);
   const std::string ome =
       "<?xml version=\"1.0\"?><OME><Image><Pixels SizeC=\"1\" SizeT=\"1\" PhysicalSizeX=\"0.5\" "
       "PhysicalSizeY=\"0.75\" PhysicalSizeZ=\"2\"/></Image></OME>";

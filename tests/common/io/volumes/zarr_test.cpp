@@ -234,6 +234,7 @@ TEST(Zarr, ShardsOfChunks) {
     const MemoryFiles files = sharded(expected, at_end);
     expect_labels(*open(files), expected);
     EXPECT_EQ(open(files)->block(), (VoxelIndex{6, 5, 4}));
+    EXPECT_TRUE(open(files)->grid().spacing_assumed);
   }
 }
 
@@ -301,6 +302,7 @@ TEST(Zarr, ImagesOpenTheFullResolutionWithSpacingAndOrigin) {
     expect_labels(*source, volume());
     EXPECT_EQ(source->grid().directions, Eigen::Matrix3d(Vec3(0.5, 0.5, 2).asDiagonal())) << path;
     EXPECT_EQ(source->grid().origin, Vec3(60, 20, 10));
+    EXPECT_FALSE(source->grid().spacing_assumed);
   }
   MemoryFiles other = image_files("s1");
   other["i.zarr/.zattrs"] = files["i.zarr/.zattrs"];
