@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 
 #include "common/io/volumes/hdf5_volume.h"
 #include "common/io/volumes/inr.h"
@@ -74,24 +75,22 @@ void run_source(const LabelSource& source) {
 /// Reads an array of zarr: its metadata, and bytes that all chunks have. Three parts are the metadata of an
 /// image, of its array, and a chunk.
 void run_zarr(std::string_view bytes) {
-  std::vector<std::string> parts;
-  for (std::size_t at = 0; parts.size() < 2 && at != std::string_view::npos;) {
-    at = bytes.find(between);
-    parts.emplace_back(bytes.substr(0, at));
+  std::array<std::string, 3> parts;
+  const bool image = bytes.substr(0, bytes.find(between)).find("multiscales") != std::string_view::npos;
+  const std::size_t chunk = image ? 2 : 1;
+  for (std::size_t k = 0; k <= chunk; ++k) {
+    const std::size_t at = k < chunk ? bytes.find(between) : std::string_view::npos;
+    parts[k] = bytes.substr(0, at);
     bytes.remove_prefix(at == std::string_view::npos ? bytes.size() : at + between.size());
   }
-  parts.emplace_back(bytes);
-  const bool image = parts[0].find("multiscales") != std::string::npos;
   const auto open = [&](const std::string& path) -> std::unique_ptr<ByteRanges> {
     const std::string name = path.substr(path.rfind('/') + 1);
-    const bool third = name == "zarr.json";
-    if (!third && name != ".zarray" && name != ".zattrs" && name != ".zgroup")
-      return std::make_unique<MemoryRanges>(path, parts.back());
+    if (name != "zarr.json" && name != ".zarray" && name != ".zattrs" && name != ".zgroup")
+      return std::make_unique<MemoryRanges>(path, parts[chunk]);
     const bool group = path.find('/') == path.rfind('/');
     const std::string& text = parts[image && !group ? 1 : 0];
-    const bool is_third = text.find("node_type") != std::string::npos;
-    if (name == ".zgroup" || third != is_third || (image && group) != (name == ".zattrs" || (third && group)))
-      return nullptr;
+    const bool third = text.find("node_type") != std::string::npos;
+    if (name != (third ? "zarr.json" : image && group ? ".zattrs" : ".zarray")) return nullptr;
     return std::make_unique<MemoryRanges>(path, text);
   };
   try {
