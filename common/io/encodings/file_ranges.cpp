@@ -42,7 +42,7 @@ ByteBuffer ByteRanges::head(std::size_t n) const {
   return bytes(0, static_cast<std::size_t>(std::min<std::uint64_t>(n, size())));
 }
 
-FileRanges::FileRanges(std::string path) : FileRanges(path, open_to_read(path)) {}
+FileRanges::FileRanges(const std::string& path) : FileRanges(path, open_to_read(path)) {}
 
 FileRanges::FileRanges(std::string path, int file) : path_(std::move(path)), file_(file) {
   if (file_ < 0) throw InputError("cannot read " + path_ + ": " + std::strerror(errno));

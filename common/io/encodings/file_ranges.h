@@ -45,7 +45,7 @@ class ByteRanges {
 class FileRanges final : public ByteRanges {
  public:
   /// \throws InputError if the file is missing or cannot be read, or is not a regular file
-  explicit FileRanges(std::string path);
+  explicit FileRanges(const std::string& path);
   ~FileRanges() override;
 
   /// Opens a file that may be missing.

@@ -67,6 +67,7 @@ std::vector<std::int64_t> shape_of(hid_t dataset) {
   std::vector<hsize_t> size(static_cast<std::size_t>(std::max(axes, 0)));
   if (!size.empty()) H5Sget_simple_extent_dims(space.id(), size.data(), nullptr);
   std::vector<std::int64_t> out;
+  out.reserve(size.size());
   for (const hsize_t n : size)
     out.push_back(static_cast<std::int64_t>(std::min<hsize_t>(n, static_cast<hsize_t>(max_source_voxels))));
   return out;

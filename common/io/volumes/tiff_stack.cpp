@@ -249,7 +249,7 @@ std::optional<Vec3> spacing_of(const std::string& path, const TiffDescription& f
   const auto step = [&](double resolution, double unit) {
     return known(resolution) ? (unit > 0 ? unit : 1.0) / resolution : 1.0;
   };
-  if (const std::optional<Vec3> ome = ome_spacing(path, first.text)) return ome;
+  if (std::optional<Vec3> ome = ome_spacing(path, first.text)) return ome;
   const std::optional<double> between = imagej_number(first.text, "spacing");
   if (first.text.starts_with("ImageJ=") || between) {
     check_one_channel(path, "channels", imagej_number(first.text, "channels").value_or(1));

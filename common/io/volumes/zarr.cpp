@@ -197,7 +197,9 @@ void take_image_above(const FileOpener& open, OpenedArray& opened) {
   if (!folder.has_filename()) folder = folder.parent_path();  // it ends with a slash
   std::string path;
   for (int level = 0; level < max_groups_above && folder.has_filename(); ++level) {
-    path = path.empty() ? folder.filename().string() : folder.filename().string() + "/" + path;
+    std::string last = folder.filename().string();
+    if (!path.empty()) last.append("/").append(path);
+    path = std::move(last);
     folder = folder.parent_path();
     bool group = false;
     const std::optional<ZarrImage> image = image_at(open, folder.string(), group);

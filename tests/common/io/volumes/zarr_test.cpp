@@ -19,7 +19,7 @@ struct Stored {
   std::array<int, 3> chunk{4, 5, 6};
   bool column_major = false;
   bool big = false;
-  std::string separator = ".", prefix;
+  std::string separator = ".", prefix = {};
   std::function<std::string(const std::string&)> encode = [](const std::string& bytes) { return bytes; };
 };
 
