@@ -2,7 +2,11 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "tetwright/label_volume.h"
 
