@@ -9,9 +9,14 @@
 
 namespace tetwright {
 
-Vec3 LabelVolume::to_input(const Vec3& index) const { return origin + directions * index; }
+Vec3 LabelGrid::to_input(const Vec3& index) const { return origin + directions * index; }
 
-void check_geometry(const LabelVolume& volume, const std::string& file) {
+std::uint64_t LabelGrid::voxels() const {
+  return static_cast<std::uint64_t>(size[0]) * static_cast<std::uint64_t>(size[1]) *
+         static_cast<std::uint64_t>(size[2]);
+}
+
+void check_geometry(const LabelGrid& volume, const std::string& file) {
   const auto written = [](const Vec3& v) {
     std::string out;
     append_point(out, v);

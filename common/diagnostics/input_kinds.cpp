@@ -237,6 +237,15 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
      .message = "N voxels, none of them outside (label 0) (all meshed, up to the border of the volume)",
      .cause = "No voxel has the outside label.",
      .remedy = "`--outside-label N` if another label is the background."},
+    {.code = spacing_assumed,
+     .name = "spacing-assumed",
+     .severity = Severity::note,
+     .title = "volume without spacing",
+     .message = "1 volume whose file gives no spacing (each voxel has the size 1)",
+     .cause = "A zarr array outside of an OME-Zarr image, an HDF5 dataset without `element_size_um`, or a "
+              "TIFF file "
+              "without resolution.",
+     .remedy = "Write the spacing into the file, or scale the mesh where you use it."},
     {.code = islands_merged,
      .name = "islands-merged",
      .severity = Severity::note,

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
+#include <type_traits>
 
 #include "common/files/file_names.h"
 #include "common/geometry/measurable.h"
@@ -23,10 +24,7 @@
 #include "common/io/tets/vtk.h"
 #include "common/io/tets/vtu.h"
 #include "common/io/text/text_scanner.h"
-#include "common/io/volumes/inr.h"
-#include "common/io/volumes/metaimage.h"
-#include "common/io/volumes/nifti.h"
-#include "common/io/volumes/nrrd.h"
+#include "common/io/volumes/volume_formats.h"
 #include "tetwright/error.h"
 #include "tetwright/files.h"
 
@@ -68,29 +66,6 @@ constexpr std::array<SurfaceFormat, 3> shared_formats{
      {".mesh", read_medit_surface, nullptr, nullptr},
      {".vtk", read_vtk_surface, nullptr, read_vtk_surface_with_fields}}};
 
-template <LabelVolume (*read)(std::string_view, const std::string&)>
-LabelVolume read_alone(std::string_view bytes, const std::string& name, const FileReader& /*others*/) {
-  return read(bytes, name);
-}
-
-struct VolumeFormat {
-  const char* extension;
-  LabelVolume (*read)(std::string_view bytes, const std::string& name, const FileReader& others);
-  std::string (*write)(const LabelVolume& volume) = nullptr;  ///< null: the format can only be read
-  const char* header = nullptr;                               ///< extension of the header file
-  bool one_file = true;                                       ///< false: the voxels are in another file
-};
-constexpr std::array<VolumeFormat, 10> volume_formats{{{".nrrd", read_nrrd, write_nrrd},
-                                                       {".nhdr", read_nrrd, nullptr, nullptr, false},
-                                                       {".mhd", read_metaimage, nullptr, nullptr, false},
-                                                       {".mha", read_metaimage},
-                                                       {".nii", read_nifti},
-                                                       {".nii.gz", read_nifti},
-                                                       {".hdr", read_nifti, nullptr, nullptr, false},
-                                                       {".img", read_nifti, nullptr, ".hdr", false},
-                                                       {".inr", read_alone<read_inr>},
-                                                       {".inr.gz", read_alone<read_inr>}}};
-
 template <class Format>
 bool is_for(const Format& format, FileUse use) {
   return use == FileUse::read || format.write != nullptr;
@@ -101,13 +76,22 @@ bool is_for(const TetFormat& format, FileUse use) {
 
 bool is_one_file(const SurfaceFormat&) { return true; }
 bool is_one_file(const TetFormat& format) { return format.read != nullptr; }
-bool is_one_file(const VolumeFormat& format) { return format.one_file; }
+bool is_one_file(const VolumeFormat& format) { return format.read && format.one_file; }
+
+/// Extension that selects among the formats.
+template <class Format>
+std::string selecting_extension(const std::string& path) {
+  if constexpr (std::is_same_v<Format, VolumeFormat>)
+    return volume_path(path).extension;
+  else
+    return extension_of(path);
+}
 
 /// Format of the file's extension, or null.
 template <class Formats>
 const typename Formats::value_type* find_format(const Formats& formats, const std::string& path,
                                                 FileUse use) {
-  const std::string extension = extension_of(path);
+  const std::string extension = selecting_extension<typename Formats::value_type>(path);
   for (const auto& format : formats)
     if (extension == format.extension && is_for(format, use)) return &format;
   return nullptr;
@@ -121,7 +105,7 @@ template <class Formats>
 const typename Formats::value_type& need_format(const Formats& formats, const std::string& path,
                                                 FileKind kind, FileUse use) {
   if (const auto* format = find_format(formats, path, use)) return *format;
-  const std::string extension = extension_of(path);
+  const std::string extension = selecting_extension<typename Formats::value_type>(path);
   const bool only_read = find_format(formats, path, FileUse::read) != nullptr;
   throw UsageError(path + ": " +
                    (extension.empty() ? "no extension"
@@ -191,9 +175,11 @@ const SurfaceFormat& need_surface_format(const std::string& path) {
 template <class Format>
 const Format& streamed(const Format& format, const std::string& name) {
   if (is_one_file(format)) return format;
-  throw UsageError(name + ": " + format.extension +
-                   " is several files, which a stream cannot hold; give a file name, or " + "one of " +
-                   streamed_extensions());
+  throw UsageError(
+      name + ": " + format.extension +
+      " is several files or is read by parts, which a stream does not allow; give a file name, or one "
+      "of " +
+      streamed_extensions());
 }
 
 /// Checks the mesh by require_measurable(), and returns it.
@@ -222,7 +208,7 @@ void write_into(OutputFiles* files, const std::string& path,
 FileKind file_kind(const std::string& path, FileUse use) {
   if (find_format(surface_formats, path, use)) return FileKind::surface;
   if (find_format(tet_formats(), path, use)) return FileKind::tet_mesh;
-  if (find_format(volume_formats, path, use)) return FileKind::volume;
+  if (find_format(volume_formats(), path, use)) return FileKind::volume;
   return FileKind::unknown;
 }
 
@@ -240,7 +226,7 @@ std::string known_extensions(FileKind kind, FileUse use) {
   if (kind == FileKind::surface || kind == FileKind::unknown) add(surface_formats);
   if (kind == FileKind::surface && use == FileUse::read) add(shared_formats);
   if (kind == FileKind::tet_mesh || kind == FileKind::unknown) add(tet_formats());
-  if (kind == FileKind::volume || kind == FileKind::unknown) add(volume_formats);
+  if (kind == FileKind::volume || kind == FileKind::unknown) add(volume_formats());
   return out;
 }
 
@@ -341,7 +327,7 @@ ReadTetMesh read_tet_mesh_bytes(std::string_view bytes, const std::string& name,
 
 LabelVolume read_label_volume_bytes(std::string_view bytes, const std::string& name,
                                     const std::string& extension) {
-  return streamed(need_format(volume_formats, name + extension, FileKind::volume, FileUse::read), name)
+  return streamed(need_format(volume_formats(), name + extension, FileKind::volume, FileUse::read), name)
       .read(bytes, name, [&](const std::string& other) -> std::string {
         throw InputError(name, 0, "its voxels are in another file, " + other + "; give the header's name");
       });
@@ -356,7 +342,7 @@ std::string streamed_extensions() {
   };
   add(surface_formats);
   add(tet_formats());
-  add(volume_formats);
+  add(volume_formats());
   return out;
 }
 
@@ -376,9 +362,13 @@ std::optional<SurfaceWithFields> read_surface_with_fields(const std::string& pat
 }
 
 LabelVolume read_label_volume(const std::string& path) {
-  const VolumeFormat& format = need_format(volume_formats, path, FileKind::volume, FileUse::read);
-  const std::string first = format.header ? with_extension(path, format.header) : path;
-  return format.read(read_whole_file(first), first, read_whole_file);
+  return read_whole_volume(need_format(volume_formats(), path, FileKind::volume, FileUse::read), path);
+}
+
+std::unique_ptr<LabelSource> open_label_source(const std::string& path, const LabelSourceOptions& options) {
+  const VolumeFormat& format = need_format(volume_formats(), path, FileKind::volume, FileUse::read);
+  if (auto source = open_by_boxes(format, path, options.cache_bytes)) return source;
+  return std::make_unique<MemoryLabelSource>(read_whole_volume(format, path));
 }
 
 void write_surface(const TriangleMesh& mesh, const std::string& path, OutputFiles* files,
@@ -407,7 +397,7 @@ void write_tet_mesh(const MeshToWrite& mesh, const std::string& path, OutputFile
 
 void write_label_volume(const LabelVolume& volume, const std::string& path, OutputFiles* files,
                         const std::string& name) {
-  const VolumeFormat& format = need_written_format(volume_formats, path, FileKind::volume, name);
+  const VolumeFormat& format = need_written_format(volume_formats(), path, FileKind::volume, name);
   write_into(files, path, [&](const ByteSink& sink) { sink(format.write(volume)); });
 }
 
@@ -415,6 +405,7 @@ std::vector<std::string> files_of_input(const std::string& path) {
   static const std::vector<std::vector<const char*>> families{
       {".node", ".ele", ".face"}, {".xdmf", ".h5", "_facets.xdmf", "_facets.h5"}, {".hdr", ".img"}};
   std::vector<std::string> files{path};
+  if (const VolumePath volume = volume_path(path); volume.file != path) files.push_back(volume.file);
   const std::string extension = extension_of(path);
   for (const auto& family : families) {
     if (std::none_of(family.begin(), family.end(), [&](const char* of) { return extension == of; })) continue;
@@ -428,7 +419,7 @@ void check_output_path(const std::string& path, FileKind kind, const std::string
   if (kind == FileKind::surface)
     (void)need_written_format(surface_formats, path, kind, format);
   else if (kind == FileKind::volume)
-    (void)need_written_format(volume_formats, path, kind, format);
+    (void)need_written_format(volume_formats(), path, kind, format);
   else
     for (const std::string& file : files_of_tet_mesh(path, format)) check_output_file(file);
   if (kind != FileKind::tet_mesh) check_output_file(path);

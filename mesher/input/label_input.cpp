@@ -354,6 +354,12 @@ LabelInput make_label_input(LabelVolume volume, const std::string& file, const L
   result.materials = name_materials(choice, counts);
   result.regions = number_regions(volume.labels, result.materials);
   std::vector<MaterialTag>().swap(volume.labels);
+  if (volume.spacing_assumed)
+    result.findings.push_back({.code = DiagnosticCode::spacing_assumed,
+                               .file = file,
+                               .what = "volume whose file gives no spacing",
+                               .count = 1,
+                               .done = "each voxel has the size 1"});
   if (progress) progress->throw_if_stopped();
 
   std::size_t outside = result.regions.size();

@@ -3,11 +3,17 @@
 import collections
 import gzip
 import io
+import json
 import random
 import shutil
 import struct
 import zipfile
+import zlib
 from pathlib import Path
+
+import h5py
+import numpy
+import tifffile
 
 SURFACES = ("ply", "obj", "stl", "off", "vtp")
 SEEDS = Path(__file__).parents[1] / "fuzz" / "seeds"
@@ -74,6 +80,48 @@ def volumes(folder):
     return [folder / name for name in contents if not name.endswith(".raw")]
 
 
+def arrays(folder):
+    """Writes a ball of labels as arrays and images; returns files to damage, each with the name by which it is read."""
+    z, y, x = numpy.mgrid[:12, :12, :12]
+    labels = (((x - 5.5)**2 + (y - 5.5)**2 + (z - 5.5)**2 < 25) * (1 + (x < 6))).astype("<u2")
+    found = []
+    tifffile.imwrite(folder / "stack.tif", labels)
+    tifffile.imwrite(folder / "packed.tif", labels, tile=(16, 16), compression="zlib")
+    with h5py.File(folder / "array.h5", "w") as file:
+        file.create_dataset("labels", data=labels, chunks=(6, 6, 6), compression="gzip", fletcher32=True)
+        file["labels"].attrs["element_size_um"] = [1.5, 1, 1]
+    found += [(folder / name, folder / name) for name in ("stack.tif", "packed.tif", "array.h5")]
+
+    second = {"zarr_format": 2, "shape": [12, 12, 12], "chunks": [6, 12, 12], "dtype": "<u2", "order": "C", "fill_value": 0,
+              "filters": None, "compressor": {"id": "zlib"}}
+    image = {"multiscales": [{"axes": [{"name": n, "type": "space"} for n in "zyx"], "datasets": [
+        {"path": "0", "coordinateTransformations": [{"type": "scale", "scale": [1.5, 1, 1]}]}]}]}
+    little = {"name": "bytes", "configuration": {"endian": "little"}}
+    third = {"zarr_format": 3, "node_type": "array", "shape": [12, 12, 12], "data_type": "uint16", "fill_value": 0,
+             "chunk_grid": {"name": "regular", "configuration": {"chunk_shape": [12, 12, 12]}},
+             "chunk_key_encoding": {"name": "default"}, "attributes": {},
+             "codecs": [{"name": "sharding_indexed", "configuration": {"chunk_shape": [6, 12, 12],
+                         "codecs": [little, {"name": "gzip"}], "index_codecs": [little]}}]}
+    halves = [labels[:6].tobytes(), labels[6:].tobytes()]
+    stored = [gzip.compress(half, mtime=0) for half in halves]
+    index = struct.pack("<4Q", 0, len(stored[0]), len(stored[0]), len(stored[1]))
+    contents = {
+        "second.zarr/.zgroup": b'{"zarr_format": 2}',
+        "second.zarr/.zattrs": json.dumps(image).encode(),
+        "second.zarr/0/.zarray": json.dumps(second).encode(),
+        "second.zarr/0/0.0.0": zlib.compress(halves[0]),
+        "second.zarr/0/1.0.0": zlib.compress(halves[1]),
+        "third.zarr/zarr.json": json.dumps(third).encode(),
+        "third.zarr/c/0/0/0": b"".join(stored) + index,
+    }
+    for name, content in contents.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+        found.append((path, folder / name.split("/")[0]))
+    return found
+
+
 def damaged_file(path, data, draw):
     """Damages the stored model in a .3mf: damage to the archive itself would fail at its checksums."""
     if path.name != "stored.3mf" or draw.random() < 0.2:
@@ -119,6 +167,10 @@ def inputs(p):
         call = ["mesh", "--uniform", "--accept-changes"]
         p.must([*call, path, "-o", folder / "volume.vtu"])
         found.append((path, call))
+    for path, read in arrays(folder):
+        call = ["mesh", "--uniform", "--accept-changes", read]
+        p.must([*call, "-o", folder / "volume.vtu"])
+        found.append((path, call))
     p.must(["mesh", folder / "s.ply", "-o", folder / "s.vtu", "--resolution", "12", "--write-sdf",
             folder / "fields.vdb"])
     found.append((folder / "fields.vdb", ["mesh", "--resolution", "8"]))
@@ -158,7 +210,7 @@ def one(p, path, call, draw):
         lines = error.strip().split("\n")
         if len(lines) != 1 or not lines[0].startswith("tetwright: "):
             p.wrong(f"{what}: says '{error.strip()[:200]}'", path)
-        elif status in (2, 3, 4) and path.stem not in lines[0]:
+        elif status in (2, 3, 4) and (other or [path])[0].stem not in lines[0]:
             p.wrong(f"{what}: the message does not name the file: '{lines[0][:200]}'", path)
         if out.exists():
             p.wrong(f"{what}: status {status}, and an output is there", path)

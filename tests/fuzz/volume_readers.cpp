@@ -2,22 +2,33 @@
 
 // Fuzzes the readers of volumes: each must return a volume that satisfies label_volume.h, or throw an
 // InputError. The volume must survive a round trip through the NRRD writer. The file to which a header refers
-// follows a line of equal signs.
+// follows a line of equal signs. Sources must give the same labels box by box as as a whole.
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+
+#include "common/io/volumes/hdf5_volume.h"
 #include "common/io/volumes/inr.h"
 #include "common/io/volumes/metaimage.h"
 #include "common/io/volumes/nifti.h"
 #include "common/io/volumes/nrrd.h"
+#include "common/io/volumes/tiff_stack.h"
+#include "common/io/volumes/zarr.h"
+#include "tests/common/io/memory_files.h"
 #include "tests/fuzz/targets.h"
 #include "tetwright/error.h"
 
 namespace tetwright::fuzz {
 namespace {
 
+constexpr std::size_t max_voxels = 100000;  // maximum size of volumes that are written or read by boxes
+constexpr std::string_view between = "=====\n";
+
 using Read = LabelVolume (*)(std::string_view, const std::string&, const FileReader&);
 
 void run(std::string_view bytes, Read read) {
-  constexpr std::size_t max_voxels = 100000;  // maximum size of volumes that are written
-  constexpr std::string_view between = "=====\n";
   const std::size_t at = bytes.find(between);
   try {
     const LabelVolume volume = read(bytes.substr(0, at), "fuzz", [&](const std::string& path) {
@@ -44,12 +55,84 @@ LabelVolume read_inr_alone(std::string_view bytes, const std::string& name, cons
   return read_inr(bytes, name);
 }
 
+/// Reads a source as a whole and by its slices.
+void run_source(const LabelSource& source) {
+  const LabelGrid& grid = source.grid();
+  std::uint64_t block = 1;
+  for (const int n : source.block()) block *= static_cast<std::uint64_t>(n);
+  // Memory of a chunk beyond this may be reserved, which the fuzzer would report.
+  if (grid.voxels() > max_voxels || block > max_voxels) return;
+  const LabelVolume volume = read_all(source, "fuzz");
+  const std::size_t slice = volume.labels.size() / static_cast<std::size_t>(grid.size[2]);
+  std::vector<MaterialTag> labels(slice);
+  for (int z = 0; z < grid.size[2]; ++z) {
+    source.read({0, 0, z}, {grid.size[0], grid.size[1], z + 1}, labels);
+    TETWRIGHT_CHECK(std::equal(labels.begin(), labels.end(),
+                               volume.labels.begin() + static_cast<std::ptrdiff_t>(slice) * z));
+  }
+}
+
+/// Reads an array of zarr: its metadata, and bytes that all chunks have. Three parts are the metadata of an
+/// image, of its array, and a chunk.
+void run_zarr(std::string_view bytes) {
+  std::array<std::string, 3> parts;
+  const bool image = bytes.substr(0, bytes.find(between)).find("multiscales") != std::string_view::npos;
+  const std::size_t chunk = image ? 2 : 1;
+  for (std::size_t k = 0; k <= chunk; ++k) {
+    const std::size_t at = k < chunk ? bytes.find(between) : std::string_view::npos;
+    parts[k] = bytes.substr(0, at);
+    bytes.remove_prefix(at == std::string_view::npos ? bytes.size() : at + between.size());
+  }
+  const auto open = [&](const std::string& path) -> std::unique_ptr<ByteRanges> {
+    const std::string name = path.substr(path.rfind('/') + 1);
+    if (name != "zarr.json" && name != ".zarray" && name != ".zattrs" && name != ".zgroup")
+      return std::make_unique<MemoryRanges>(path, parts[chunk]);
+    const bool group = path.find('/') == path.rfind('/');
+    const std::string& text = parts[image && !group ? 1 : 0];
+    const bool third = text.find("node_type") != std::string::npos;
+    if (name != (third ? "zarr.json" : image && group ? ".zattrs" : ".zarray")) return nullptr;
+    return std::make_unique<MemoryRanges>(path, text);
+  };
+  try {
+    run_source(*open_zarr("f", 1 << 12, open));
+  } catch (const InputError&) {
+  }
+}
+
+/// A file in memory with a path.
+class NamedMemory {
+ public:
+  explicit NamedMemory(std::string_view bytes) : file_(memfd_create("fuzz", MFD_CLOEXEC)) {
+    TETWRIGHT_CHECK(file_ >= 0 &&
+                    ::write(file_, bytes.data(), bytes.size()) == static_cast<ssize_t>(bytes.size()));
+  }
+  ~NamedMemory() { ::close(file_); }
+  NamedMemory(const NamedMemory&) = delete;
+  NamedMemory& operator=(const NamedMemory&) = delete;
+  std::string path() const { return "/proc/self/fd/" + std::to_string(file_); }
+
+ private:
+  int file_;
+};
+
+void run_file(std::string_view bytes, std::unique_ptr<LabelSource> (*open)(const std::string& path)) {
+  const NamedMemory file(bytes);
+  try {
+    run_source(*open(file.path()));
+  } catch (const InputError&) {
+  }
+}
+
 using Bytes = std::string_view;
 constexpr Target targets[] = {
     {"nrrd", [](Bytes b) { run(b, read_nrrd); }},
     {"metaimage", [](Bytes b) { run(b, read_metaimage); }},
     {"nifti", [](Bytes b) { run(b, read_nifti); }},
     {"inr", [](Bytes b) { run(b, read_inr_alone); }},
+    {"zarr", run_zarr},
+    {"tiff", [](Bytes b) { run_file(b, [](const std::string& p) { return open_tiff_stack(p, 1 << 12); }); }},
+    {"hdf5",
+     [](Bytes b) { run_file(b, [](const std::string& p) { return open_hdf5_volume(p, {}, 1 << 12); }); }},
 };
 
 }  // namespace

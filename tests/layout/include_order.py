@@ -19,7 +19,8 @@ ALLOWED = {
 }
 # Allowed only here; the programs and tests on top of the libraries may include anything.
 FOLDERS_OF_LIBRARIES = {
-    "common/io": ("hdf5.h", "libdeflate.h", "lz4.h", "lzma.h", "nlohmann/", "pugixml.hpp", "zip.h", "zlib.h"),
+    "common/io": ("blosc.h", "hdf5.h", "libdeflate.h", "lz4.h", "lzma.h", "nlohmann/", "pugixml.hpp", "tiffio.h",
+                  "zip.h", "zlib.h", "zstd.h"),
 }
 FILES_OF_LIBRARIES = {
     "oneapi/": ("common/parallel/tbb_loop.cpp",),

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# Defines the target tetwright::block_compressors, liblz4 and liblzma, for the build and for users of the installed
+# Defines the target tetwright::block_compressors, liblz4, liblzma, libzstd and libblosc, for the build and for users of the installed
 # library: Debian's packages have no CMake configuration.
 if(NOT TARGET tetwright::block_compressors)
   add_library(tetwright::block_compressors INTERFACE IMPORTED GLOBAL)
-  foreach(name lz4 lzma)
+  foreach(name lz4 lzma zstd blosc)
     string(TOUPPER ${name} upper)
     find_path(TETWRIGHT_${upper}_INCLUDE ${name}.h REQUIRED)
     find_library(TETWRIGHT_${upper}_LIBRARY ${name} REQUIRED)

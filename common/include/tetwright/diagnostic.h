@@ -87,6 +87,7 @@ enum class DiagnosticCode : std::uint8_t {
   partition_ends,
   // Segmented volumes.
   no_outside,
+  spacing_assumed,
   islands_merged,
   islands_all_small,
   // Tet meshes.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -10,19 +11,20 @@
 
 namespace tetwright {
 
-/// A segmented volume: a label for each voxel of a regular grid. The grid's axes need be neither
+/// The grid of a segmented volume, with what its file says of the labels. The grid's axes need be neither
 /// perpendicular nor right-handed.
 ///
 /// Voxels are cell-centred: index (i, j, k) is the centre of a voxel, which extends half a step to each side.
-struct LabelVolume {
+struct LabelGrid {
   std::array<int, 3> size{};   ///< voxels along each axis, 1 or more
   Vec3 origin = Vec3::Zero();  ///< centre of voxel (0, 0, 0), input units
   /// Column a is the step from one voxel to the next along axis a, input units. The matrix has rank 3.
   Eigen::Matrix3d directions = Eigen::Matrix3d::Identity();
+  /// True if the file gives no spacing although its format could, so that 1 is a guess.
+  bool spacing_assumed = false;
   /// Coordinate system that the file names: "left-posterior-superior", "right-anterior-superior" and so on,
   /// or empty. Readers do not convert between them.
   std::string space;
-  std::vector<MaterialTag> labels;  ///< the first axis fastest
   /// Names of labels in the file, including labels that no voxel has; names may repeat.
   std::map<MaterialTag, std::string> names = {};
   /// Colours of labels in the file: red, green, blue, each 0 to 1.
@@ -30,11 +32,18 @@ struct LabelVolume {
 
   /// Position of a voxel index, input units. `index` may be fractional.
   Vec3 to_input(const Vec3& index) const;
+  /// Number of voxels of the whole grid.
+  std::uint64_t voxels() const;
 };
 
-/// Checks the grid of a volume.
+/// A segmented volume in memory: a label for each voxel.
+struct LabelVolume : LabelGrid {
+  std::vector<MaterialTag> labels;  ///< the first axis fastest
+};
+
+/// Checks a grid.
 /// \param file file name for messages
 /// \throws InputError unless origin and directions are finite and the directions are invertible
-void check_geometry(const LabelVolume& volume, const std::string& file);
+void check_geometry(const LabelGrid& grid, const std::string& file);
 
 }  // namespace tetwright

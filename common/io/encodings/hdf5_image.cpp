@@ -1,40 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/encodings/hdf5_image.h"
 
-#include <hdf5.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstdint>
 #include <utility>
 
+#include "common/io/encodings/hdf5_handle.h"
 #include "common/message_text.h"
 #include "tetwright/error.h"
 
 namespace tetwright {
 
 namespace {
-
-/// An HDF5 object, closed on destruction.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {}
-  Handle(Handle&& other) noexcept : id_(std::exchange(other.id_, -1)), close_(other.close_) {}
-  Handle& operator=(Handle&&) = delete;
-  ~Handle() {
-    if (id_ >= 0) close_(id_);
-  }
-  hid_t id() const { return id_; }
-  bool good() const { return id_ >= 0; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
-/// Stops the library from printing its error stack. Each thread has its own stack.
-void be_quiet() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
 /// A unique name for each file: the library shares open files that have the same name, even between threads.
 std::string unique_name() {
@@ -43,9 +22,9 @@ std::string unique_name() {
 }
 
 /// Access properties of a file in memory that is never written to disk.
-Handle in_memory() {
+Hdf5Handle in_memory() {
   constexpr std::size_t increment = std::size_t{1} << 20;
-  Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
   H5Pset_fapl_core(access.id(), increment, false);
   return access;
 }
@@ -56,14 +35,14 @@ constexpr unsigned compression_level = 4;
 }  // namespace
 
 struct Hdf5Writer::File {
-  Handle handle;
+  Hdf5Handle handle;
 
   template <class Number>
   void add(const std::string& name, std::span<const Number> values, std::size_t columns, hid_t stored,
            hid_t native) {
     const std::array<hsize_t, 2> size{values.size() / columns, columns};
-    const Handle space(H5Screate_simple(2, size.data(), nullptr), H5Sclose);
-    const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    const Hdf5Handle space(H5Screate_simple(2, size.data(), nullptr), H5Sclose);
+    const Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     H5Pset_obj_track_times(creation.id(), false);  // same bytes for the same content
     if (size[0] > 0) {
       const std::array<hsize_t, 2> chunk{
@@ -71,7 +50,7 @@ struct Hdf5Writer::File {
       H5Pset_chunk(creation.id(), 2, chunk.data());
       H5Pset_deflate(creation.id(), compression_level);
     }
-    const Handle dataset(
+    const Hdf5Handle dataset(
         H5Dcreate2(handle.id(), name.c_str(), stored, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
         H5Dclose);
     if (!dataset.good() || H5Dwrite(dataset.id(), native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
@@ -81,10 +60,10 @@ struct Hdf5Writer::File {
 };
 
 Hdf5Writer::Hdf5Writer() {
-  be_quiet();
-  const Handle access = in_memory();
+  quiet_hdf5();
+  const Hdf5Handle access = in_memory();
   file_ = std::make_unique<File>(
-      File{Handle(H5Fcreate(unique_name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose)});
+      File{Hdf5Handle(H5Fcreate(unique_name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose)});
   if (!file_->handle.good()) throw OutputError("the HDF5 library cannot create a file in memory");
 }
 Hdf5Writer::~Hdf5Writer() = default;
@@ -110,7 +89,7 @@ std::string Hdf5Writer::bytes() {
 
 struct Hdf5Reader::File {
   explicit File(std::string of_bytes) : bytes(std::move(of_bytes)) {
-    const Handle access = in_memory();
+    const Hdf5Handle access = in_memory();
     H5Pset_file_image(access.id(), bytes.data(), bytes.size());
     id = H5Fopen(unique_name().c_str(), H5F_ACC_RDONLY, access.id());
   }
@@ -125,7 +104,7 @@ struct Hdf5Reader::File {
 };
 
 Hdf5Reader::Hdf5Reader(std::string bytes, std::string name) : name_(std::move(name)) {
-  be_quiet();
+  quiet_hdf5();
   file_ = std::make_unique<File>(std::move(bytes));
   if (file_->id < 0) throw InputError(name_ + ": this is not an HDF5 file, or it is damaged");
 }
@@ -135,9 +114,9 @@ std::vector<double> Hdf5Reader::numbers(const std::string& dataset, std::size_t 
   const auto fail = [&](const std::string& what) -> void {
     throw InputError(name_ + ": dataset " + in_quotes(dataset) + " " + what);
   };
-  const Handle set(H5Dopen2(file_->id, dataset.c_str(), H5P_DEFAULT), H5Dclose);
+  const Hdf5Handle set(H5Dopen2(file_->id, dataset.c_str(), H5P_DEFAULT), H5Dclose);
   if (!set.good()) fail("is missing; do the files belong together?");
-  const Handle type(H5Dget_type(set.id()), H5Tclose), space(H5Dget_space(set.id()), H5Sclose);
+  const Hdf5Handle type(H5Dget_type(set.id()), H5Tclose), space(H5Dget_space(set.id()), H5Sclose);
   const H5T_class_t kind = H5Tget_class(type.id());
   if (kind != H5T_INTEGER && kind != H5T_FLOAT) fail("does not hold numbers");
   const hssize_t n = H5Sget_simple_extent_npoints(space.id());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -23,6 +24,14 @@ struct DataFile {
   std::string path;
   std::string bytes;
 };
+
+/// Path of the file named by `field` of the header, relative to the header's folder.
+/// \throws InputError with the line of the header if the field does not name one file
+std::string data_file_path(const HeaderFields& header, const std::string& field);
+
+/// Size of the file named by `field` of the header, bytes.
+/// \throws InputError with the line of the header if the file cannot be read
+std::uint64_t data_file_size(const HeaderFields& header, const std::string& field);
 
 /// Reads the file named by `field` of the header, relative to the header's folder.
 /// \throws InputError with the line of the header if the file cannot be read

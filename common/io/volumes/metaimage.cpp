@@ -7,6 +7,7 @@
 #include "common/io/encodings/vtk_numbers.h"
 #include "common/io/volumes/header_fields.h"
 #include "common/io/volumes/voxel_data.h"
+#include "common/lower_case.h"
 #include "common/trimmed.h"
 #include "tetwright/error.h"
 
@@ -66,7 +67,7 @@ bool flag(const HeaderFields& header, const std::string& field, bool otherwise) 
   return false;
 }
 
-LabelVolume read_geometry(const HeaderFields& header) {
+LabelVolume read_geometry(const HeaderFields& header, std::int64_t max_voxels) {
   if (header.has("objecttype") && header.lower_text("objecttype") != "image")
     header.fail("objecttype",
                 "an object of type Image is needed, this one is " + in_quotes(header.text("objecttype")));
@@ -77,7 +78,7 @@ LabelVolume read_geometry(const HeaderFields& header) {
       header.fail("elementnumberofchannels",
                   std::to_string(n) + " channels; a volume with one label per voxel is needed");
   LabelVolume volume;
-  volume.size = checked_size(header.integers("dimsize"), header.file(), header.line("dimsize"));
+  volume.size = checked_size(header.integers("dimsize"), header.file(), header.line("dimsize"), max_voxels);
   if (const std::string field = header.any_of({"offset", "position", "origin"}); header.has(field)) {
     const std::vector<double> origin = header.numbers(field, 3);
     volume.origin = Vec3(origin[0], origin[1], origin[2]);
@@ -101,45 +102,75 @@ LabelVolume read_geometry(const HeaderFields& header) {
   return volume;
 }
 
+/// The header of a MetaImage file, checked.
+struct MetaImageFile {
+  MetaImageFile(TextScanner& in, std::int64_t max_voxels)
+      : header(read_metaimage_header(in)), volume(read_geometry(header, max_voxels)) {
+    format.type = metaimage_voxel_type(header);
+    const bool big = flag(header, header.any_of({"elementbyteordermsb", "binarydatabyteordermsb"}), false);
+    format.swap = big == little_endian_machine;
+    packed = flag(header, "compresseddata", false);
+    as_text = !flag(header, "binarydata", true);
+    if (packed && as_text)
+      header.fail("compresseddata", "compressed text is not supported; save it as binary");
+    local = header.lower_text("elementdatafile") == "local";
+  }
+
+  /// Offset of the voxels in their file.
+  /// \param behind_header offset after a header in the same file, or 0
+  std::uint64_t offset(std::uint64_t behind_header, std::uint64_t file_size) const {
+    const std::int64_t skip = header.has("headersize") ? header.integer("headersize") : 0;
+    if (skip == -1) {
+      if (packed || as_text) header.fail("headersize", "HeaderSize -1 is allowed only for raw data");
+      return behind_header + offset_from_end(file_size - behind_header, volume.size, format.type);
+    }
+    // Counted from the beginning of the file, which may be the header's or a separate one.
+    if (skip < 0 || static_cast<std::uint64_t>(skip) > file_size)
+      header.fail("headersize",
+                  std::to_string(skip) + " bytes to skip, but the file has " + std::to_string(file_size));
+    return skip == 0 ? behind_header : static_cast<std::uint64_t>(skip);
+  }
+
+  HeaderFields header;
+  LabelVolume volume;  ///< without labels
+  VoxelFormat format;
+  bool packed = false, as_text = false;
+  bool local = false;  ///< the voxels are in the file of the header
+};
+
 }  // namespace
 
 LabelVolume read_metaimage(std::string_view bytes, const std::string& name, const FileReader& read) {
   TextScanner in(bytes, name);
-  const HeaderFields header = read_metaimage_header(in);
-  LabelVolume volume = read_geometry(header);
-  VoxelFormat format;
-  format.type = metaimage_voxel_type(header);
-  const bool big = flag(header, header.any_of({"elementbyteordermsb", "binarydatabyteordermsb"}), false);
-  format.swap = big == little_endian_machine;
-  const bool packed = flag(header, "compresseddata", false);
-  const bool as_text = !flag(header, "binarydata", true);
-  if (packed && as_text) header.fail("compresseddata", "compressed text is not supported; save it as binary");
-
-  const bool local = header.lower_text("elementdatafile") == "local";
+  MetaImageFile image(in, max_volume_voxels);
+  LabelVolume& volume = image.volume;
   DataFile file{name, {}};
-  if (!local) file = read_data_file(header, "elementdatafile", read);
-  const std::string_view whole = local ? bytes : std::string_view(file.bytes);
-  std::string_view data = local ? bytes.substr(in.offset()) : whole;
-  if (const std::int64_t skip = header.has("headersize") ? header.integer("headersize") : 0; skip == -1) {
-    if (packed || as_text) header.fail("headersize", "HeaderSize -1 is allowed only for raw data");
-    std::uint64_t needed = voxel_bytes(format.type);
-    for (const int n : volume.size) needed *= static_cast<std::uint64_t>(n);
-    if (needed < data.size()) data.remove_prefix(data.size() - static_cast<std::size_t>(needed));
-  } else if (skip != 0) {
-    // Counted from the beginning of the file, which may be the header's or a separate one.
-    if (skip < 0 || static_cast<std::uint64_t>(skip) > whole.size())
-      header.fail("headersize",
-                  std::to_string(skip) + " bytes to skip, but the file has " + std::to_string(whole.size()));
-    data = whole.substr(static_cast<std::size_t>(skip));
-  }
-  if (as_text) {
+  if (!image.local) file = read_data_file(image.header, "elementdatafile", read);
+  const std::string_view whole = image.local ? bytes : std::string_view(file.bytes);
+  const std::string_view data =
+      whole.substr(static_cast<std::size_t>(image.offset(image.local ? in.offset() : 0, whole.size())));
+  if (image.as_text) {
     TextScanner body(data, file.path);
     volume.labels = read_voxels_as_text(body, volume.size);
-    return volume;
+    return std::move(volume);
   }
-  ByteSource source(data, packed ? ByteSource::Packing::deflate : ByteSource::Packing::none, file.path);
-  volume.labels = read_voxels(source, format, volume.size);
-  return volume;
+  ByteSource source(data, image.packed ? ByteSource::Packing::deflate : ByteSource::Packing::none, file.path);
+  volume.labels = read_voxels(source, image.format, volume.size);
+  return std::move(volume);
+}
+
+std::optional<RawVolume> find_metaimage(const HeaderBytes& head, const std::string& name) {
+  // The last field of a header.
+  if (!head.whole_file() && lower_case(head.bytes).find("elementdatafile") == std::string::npos)
+    return std::nullopt;
+  TextScanner in(head.bytes, name);
+  const MetaImageFile image(in, max_source_voxels);
+  if (image.packed || image.as_text) return std::nullopt;
+  RawVolume found{image.volume, name, 0, image.format};
+  if (!image.local) found.file = data_file_path(image.header, "elementdatafile");
+  const std::uint64_t size = image.local ? head.file_size : data_file_size(image.header, "elementdatafile");
+  found.offset = image.offset(image.local ? in.offset() : 0, size);
+  return found;
 }
 
 }  // namespace tetwright

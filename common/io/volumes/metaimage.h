@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "common/io/volumes/data_file.h"
+#include "common/io/volumes/raw_volume.h"
 #include "tetwright/files.h"
 #include "tetwright/label_volume.h"
 
@@ -19,5 +20,8 @@ namespace tetwright {
 /// \throws InputError with the line of the header for malformed contents
 LabelVolume read_metaimage(std::string_view bytes, const std::string& name,
                            const FileReader& read = read_whole_file);
+
+/// RawVolumeFinder of MetaImage.
+std::optional<RawVolume> find_metaimage(const HeaderBytes& head, const std::string& name);
 
 }  // namespace tetwright

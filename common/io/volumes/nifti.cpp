@@ -58,7 +58,7 @@ class NiftiHeader {
   bool detached() const { return detached_; }
   bool swap() const { return swap_; }
 
-  std::array<int, 3> size() const {
+  std::array<int, 3> size(std::int64_t max_voxels) const {
     const std::int64_t axes = dim(0);
     if (axes < 3 || axes > 7)
       fail("dim[0] is " + std::to_string(axes) + "; a volume of labels has 3 dimensions");
@@ -72,7 +72,7 @@ class NiftiHeader {
              (k == 4 ? "; a volume of a single time point is needed, save one of them"
                      : "; a volume with one label per voxel is needed"));
     }
-    return checked_size(sizes, name_, 0);
+    return checked_size(sizes, name_, 0, max_voxels);
   }
 
   VoxelFormat format() const {
@@ -102,7 +102,7 @@ class NiftiHeader {
     return static_cast<std::size_t>(offset);
   }
 
-  void read_geometry(LabelVolume& volume) const {
+  void read_geometry(LabelGrid& volume) const {
     // NIfTI's convention: x points right, y to the front, z up.
     volume.space = "right-anterior-superior";
     if (code(layout_->sform) > 0) {
@@ -240,9 +240,15 @@ std::string image_of(const std::string& name) {
   return (name.ends_with(".hdr") ? name.substr(0, name.size() - 4) : name) + ".img";
 }
 
+bool is_gzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b"); }
+
 ByteSource source_of(std::string_view bytes, const std::string& name) {
-  return {bytes, bytes.starts_with("\x1f\x8b") ? ByteSource::Packing::deflate : ByteSource::Packing::none,
-          name};
+  return {bytes, is_gzip(bytes) ? ByteSource::Packing::deflate : ByteSource::Packing::none, name};
+}
+
+std::string begins_behind_end(const std::string& file, std::uint64_t offset, std::uint64_t size) {
+  return file + ": the voxels begin at byte " + std::to_string(offset) + " of " + std::to_string(size) +
+         "; the file is truncated";
 }
 
 }  // namespace
@@ -256,15 +262,14 @@ LabelVolume read_nifti(std::string_view bytes, const std::string& name, const Fi
     header_bytes += source.take(static_cast<std::size_t>(version_2.header_size - version_1.header_size));
   const NiftiHeader header(header_bytes, name);
   LabelVolume volume;
-  volume.size = header.size();
+  volume.size = header.size(max_volume_voxels);
   header.read_geometry(volume);
   check_geometry(volume, name);
   const VoxelFormat format = header.format();
   const auto read_from = [&](ByteSource& voxels, const std::string& file, std::size_t taken) {
     const std::size_t between = header.offset() - taken;
     if (voxels.skip(between) < between)
-      throw InputError(file + ": the voxels begin at byte " + std::to_string(header.offset()) + " of " +
-                       std::to_string(voxels.taken()) + "; the file is truncated");
+      throw InputError(begins_behind_end(file, header.offset(), voxels.taken()));
     volume.labels = read_voxels(voxels, format, volume.size);
   };
   if (!header.detached()) {
@@ -276,6 +281,24 @@ LabelVolume read_nifti(std::string_view bytes, const std::string& name, const Fi
   ByteSource voxels = source_of(image_bytes, image);
   read_from(voxels, image, 0);
   return volume;
+}
+
+std::optional<RawVolume> find_nifti(const HeaderBytes& head, const std::string& name) {
+  if (is_gzip(head.bytes)) return std::nullopt;
+  const NiftiHeader header(head.bytes, name);
+  RawVolume found{{}, name, header.offset(), header.format()};
+  found.grid.size = header.size(max_source_voxels);
+  header.read_geometry(found.grid);
+  check_geometry(found.grid, name);
+  std::uint64_t size = head.file_size;
+  if (header.detached()) {
+    found.file = image_of(name);
+    const FileRanges image(found.file);
+    if (is_gzip(image.head(2).view())) return std::nullopt;
+    size = image.size();
+  }
+  if (found.offset > size) throw InputError(begins_behind_end(found.file, found.offset, size));
+  return found;
 }
 
 }  // namespace tetwright

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "common/io/volumes/data_file.h"
+#include "common/io/volumes/raw_volume.h"
 #include "tetwright/label_volume.h"
 
 namespace tetwright {
@@ -19,5 +20,8 @@ namespace tetwright {
 /// \param read_file reads the .img file
 /// \throws InputError for malformed contents
 LabelVolume read_nifti(std::string_view bytes, const std::string& name, const FileReader& read_file);
+
+/// RawVolumeFinder of NIfTI.
+std::optional<RawVolume> find_nifti(const HeaderBytes& head, const std::string& name);
 
 }  // namespace tetwright

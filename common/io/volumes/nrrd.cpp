@@ -11,6 +11,7 @@
 #include "common/io/encodings/byte_order.h"
 #include "common/io/encodings/vtk_numbers.h"
 #include "common/io/volumes/header_fields.h"
+#include "common/io/volumes/nrrd_fields.h"
 #include "common/io/volumes/voxel_data.h"
 #include "common/lower_case.h"
 #include "common/trimmed.h"
@@ -21,198 +22,6 @@ namespace tetwright {
 namespace {
 
 constexpr std::int64_t max_axes = 16;  // the format's own limit
-
-VoxelType nrrd_voxel_type(const HeaderFields& header) {
-  constexpr std::array<std::pair<std::string_view, VoxelType>, 32> names{
-      {{"signed char", VoxelType::int8},
-       {"int8", VoxelType::int8},
-       {"int8_t", VoxelType::int8},
-       {"uchar", VoxelType::uint8},
-       {"unsigned char", VoxelType::uint8},
-       {"uint8", VoxelType::uint8},
-       {"uint8_t", VoxelType::uint8},
-       {"short", VoxelType::int16},
-       {"short int", VoxelType::int16},
-       {"signed short", VoxelType::int16},
-       {"signed short int", VoxelType::int16},
-       {"int16", VoxelType::int16},
-       {"int16_t", VoxelType::int16},
-       {"ushort", VoxelType::uint16},
-       {"unsigned short", VoxelType::uint16},
-       {"unsigned short int", VoxelType::uint16},
-       {"uint16", VoxelType::uint16},
-       {"uint16_t", VoxelType::uint16},
-       {"int", VoxelType::int32},
-       {"signed int", VoxelType::int32},
-       {"int32", VoxelType::int32},
-       {"int32_t", VoxelType::int32},
-       {"uint", VoxelType::uint32},
-       {"unsigned int", VoxelType::uint32},
-       {"uint32", VoxelType::uint32},
-       {"uint32_t", VoxelType::uint32},
-       {"int64", VoxelType::int64},
-       {"int64_t", VoxelType::int64},
-       {"uint64", VoxelType::uint64},
-       {"uint64_t", VoxelType::uint64},
-       {"float", VoxelType::float32},
-       {"double", VoxelType::float64}}};
-  std::string type;
-  for (const std::string_view word : header.words("type"))
-    type += (type.empty() ? "" : " ") + lower_case(word);
-  for (const auto& [name, value] : names)
-    if (name == type) return value;
-  // "long long" in all its spellings in C.
-  if (type.find("long long") != std::string::npos || type == "longlong" || type == "ulonglong")
-    return type[0] == 'u' ? VoxelType::uint64 : VoxelType::int64;
-  header.fail("type", "type " + in_quotes(type) +
-                          " of the voxels is not supported; save the labels as unsigned char, short or int");
-}
-
-bool known_field(const std::string& field) {
-  constexpr std::array<std::string_view, 40> names{"dimension",
-                                                   "type",
-                                                   "block size",
-                                                   "blocksize",
-                                                   "encoding",
-                                                   "endian",
-                                                   "content",
-                                                   "min",
-                                                   "max",
-                                                   "old min",
-                                                   "oldmin",
-                                                   "old max",
-                                                   "oldmax",
-                                                   "data file",
-                                                   "datafile",
-                                                   "line skip",
-                                                   "lineskip",
-                                                   "byte skip",
-                                                   "byteskip",
-                                                   "number",
-                                                   "sample units",
-                                                   "sampleunits",
-                                                   "sizes",
-                                                   "spacings",
-                                                   "thicknesses",
-                                                   "axis mins",
-                                                   "axismins",
-                                                   "axis maxs",
-                                                   "axismaxs",
-                                                   "centers",
-                                                   "centerings",
-                                                   "labels",
-                                                   "units",
-                                                   "kinds",
-                                                   "space",
-                                                   "space dimension",
-                                                   "space units",
-                                                   "space origin",
-                                                   "space directions",
-                                                   "measurement frame"};
-  return std::find(names.begin(), names.end(), field) != names.end();
-}
-
-bool is_data_file(std::string_view field) {
-  const std::string name = lower_case(trimmed(field));
-  return name == "data file" || name == "datafile";
-}
-
-bool is_list(std::string_view value) {
-  const std::string text = lower_case(trimmed(value));
-  return text == "list" || text.starts_with("list ");
-}
-
-/// Fields of 3D Slicer that describe the segments of a .seg.nrrd: "Segment3_Name:=liver",
-/// "Segment3_LabelValue:=4", "Segment3_Color:=0.87 0.51 0.4".
-class Segments {
- public:
-  void add(std::string_view key, std::string_view value) {
-    constexpr std::string_view begin = "Segment";
-    const std::size_t underscore = key.find('_');
-    std::int64_t number = 0;
-    if (!key.starts_with(begin) || underscore == std::string_view::npos ||
-        !parse_number(key.substr(begin.size(), underscore - begin.size()), number))
-      return;
-    const std::string_view what = key.substr(underscore + 1);
-    Segment& segment = segments_[number];
-    if (what == "Name")
-      segment.name = std::string(trimmed(value));
-    else if (what == "LabelValue")
-      segment.has_label = parse_number(trimmed(value), segment.label);
-    else if (what == "Color")
-      segment.colour = parse_colour(value);
-    else if (what == "Layer" && parse_number(trimmed(value), segment.layer))
-      layers_ = std::max(layers_, segment.layer + 1);
-  }
-  /// Number of layers; overlapping segments are stored in several layers.
-  std::int64_t layers() const { return layers_; }
-  void give_names_and_colours(LabelVolume& volume) const {
-    for (const auto& [number, segment] : segments_) {
-      if (!segment.has_label || segment.label < std::numeric_limits<MaterialTag>::min() ||
-          segment.label > std::numeric_limits<MaterialTag>::max())
-        continue;
-      const auto tag = static_cast<MaterialTag>(segment.label);
-      if (!segment.name.empty()) volume.names.emplace(tag, segment.name);
-      if (segment.colour) volume.colours.emplace(tag, *segment.colour);
-    }
-  }
-
- private:
-  using Colour = std::array<double, 3>;
-  /// \return std::nullopt for a malformed colour, since the volume need not be rejected for it
-  static std::optional<Colour> parse_colour(std::string_view value) {
-    Colour colour;
-    for (double& part : colour) {
-      value = trimmed(value);
-      const std::size_t end = std::min(value.find(' '), value.size());
-      if (!parse_number(value.substr(0, end), part) || !(part >= 0 && part <= 1)) return {};
-      value.remove_prefix(end);
-    }
-    return colour;
-  }
-
-  struct Segment {
-    std::string name;
-    std::optional<Colour> colour;
-    std::int64_t label = 0, layer = 0;
-    bool has_label = false;
-  };
-  std::map<std::int64_t, Segment> segments_;
-  std::int64_t layers_ = 1;
-};
-
-/// Reads the header, including the empty line after it; a detached header may end without one.
-HeaderFields read_nrrd_header(TextScanner& in, Segments& segments) {
-  if (in.left() == 0) in.fail("the file is empty");
-  HeaderFields header(in.name());
-  const std::string_view magic = in.rest_of_line();
-  if (!magic.starts_with("NRRD000") || magic.size() < 8)
-    throw InputError(in.name(), 1,
-                     "expected \"NRRD000\" and a digit at the beginning, found " + in_quotes(magic) +
-                         "; is this an NRRD file?");
-  while (in.left() > 0) {
-    const std::size_t line = in.line();
-    const std::string_view text = in.rest_of_line();
-    if (text.empty()) break;
-    if (text[0] == '#') continue;
-    const std::size_t colon = text.find(':');
-    if (colon == std::string_view::npos)
-      throw InputError(in.name(), line,
-                       "expected \"field: value\", found " + in_quotes(text) +
-                           "; the header is damaged or lacks the empty line at its end");
-    if (text.substr(colon).starts_with(":=")) {  // a key/value pair with user-defined meaning
-      segments.add(text.substr(0, colon), text.substr(colon + 2));
-      continue;
-    }
-    const std::string_view field = text.substr(0, colon);
-    if (!known_field(lower_case(trimmed(field))))
-      throw InputError(in.name(), line,
-                       "unknown field " + in_quotes(field) + "; write notes as comments or \"key:=value\"");
-    header.add(field, text.substr(colon + 1), line);
-    if (is_data_file(field) && is_list(text.substr(colon + 1))) break;  // file names follow
-  }
-  return header;
-}
 
 /// Reads vectors "(1,0,0) (0, 1, 0) none". "none" and vectors of NaN become std::nullopt.
 std::vector<std::optional<Vec3>> vectors(const HeaderFields& header, const std::string& field) {
@@ -255,7 +64,7 @@ std::vector<std::optional<Vec3>> vectors(const HeaderFields& header, const std::
 /// Interprets the fields of a header.
 class NrrdHeader {
  public:
-  explicit NrrdHeader(const HeaderFields& fields) : fields_(fields) {
+  NrrdHeader(const HeaderFields& fields, std::int64_t max_voxels) : fields_(fields), max_voxels_(max_voxels) {
     const std::int64_t dimension = fields_.integer("dimension");
     if (dimension < 3 || dimension > max_axes)
       fields_.fail("dimension",
@@ -309,7 +118,7 @@ class NrrdHeader {
                        " axes of more than one item; a volume of labels has 3, save one of its parts");
     std::array<std::int64_t, 3> sizes;
     for (std::size_t k = 0; k < 3; ++k) sizes[k] = sizes_[chosen_[k]];
-    volume_.size = checked_size(sizes, fields_.file(), fields_.line("sizes"));
+    volume_.size = checked_size(sizes, fields_.file(), fields_.line("sizes"), max_voxels_);
   }
 
   void read_geometry() {
@@ -384,6 +193,7 @@ class NrrdHeader {
   }
 
   const HeaderFields& fields_;
+  std::int64_t max_voxels_;
   std::size_t axes_ = 0;
   std::vector<std::int64_t> sizes_;
   std::vector<std::string_view> kinds_;
@@ -417,63 +227,113 @@ bool is_swapped(const HeaderFields& header, VoxelType type) {
   return (endian == "little") != little_endian_machine;
 }
 
+enum class NrrdEncoding { raw, gzip, text };
+
+/// The header of an NRRD file, checked.
+struct NrrdFile {
+  NrrdFile(TextScanner& in, std::int64_t max_voxels) : fields(read_nrrd_header(in, segments)) {
+    if (segments.layers() > 1)
+      fields.fail("sizes", "its segments overlap, in " + std::to_string(segments.layers()) +
+                               " layers; each voxel needs one label: export the segmentation as a label map "
+                               "(3D Slicer: Segmentations, Export/import), or save it without overlap");
+    const std::string named = fields.lower_text("encoding");
+    if (named == "gzip" || named == "gz")
+      encoding = NrrdEncoding::gzip;
+    else if (named == "txt" || named == "text" || named == "ascii")
+      encoding = NrrdEncoding::text;
+    else if (named != "raw")
+      fields.fail("encoding",
+                  "encoding " + in_quotes(named) + " is not supported; save the volume as raw or gzip");
+    volume = NrrdHeader(fields, max_voxels).volume();
+    segments.give_names_and_colours(volume);
+    check_geometry(volume, in.name());
+    format.type = nrrd_voxel_type(fields);
+    data_field = fields.any_of({"data file", "datafile"});
+    detached = fields.has(data_field);
+    lines_to_skip = optional_integer(fields, fields.any_of({"line skip", "lineskip"}));
+    skip_field = fields.any_of({"byte skip", "byteskip"});
+    bytes_to_skip = optional_integer(fields, skip_field);
+  }
+
+  void check_skip() const {
+    if (bytes_to_skip < -1 || (bytes_to_skip == -1 && encoding != NrrdEncoding::raw))
+      fields.fail(skip_field, std::to_string(bytes_to_skip) + " bytes to skip" +
+                                  (bytes_to_skip == -1 ? ", which is allowed only for raw data" : ""));
+  }
+
+  NrrdSegments segments;
+  HeaderFields fields;
+  NrrdEncoding encoding = NrrdEncoding::raw;
+  LabelVolume volume;  ///< without labels
+  VoxelFormat format;
+  std::string data_field, skip_field;
+  bool detached = false;
+  std::int64_t lines_to_skip = 0, bytes_to_skip = 0;
+};
+
 }  // namespace
 
 LabelVolume read_nrrd(std::string_view bytes, const std::string& name, const FileReader& read) {
   TextScanner in(bytes, name);
-  Segments segments;
-  const HeaderFields header = read_nrrd_header(in, segments);
-  if (segments.layers() > 1)
-    header.fail("sizes", "its segments overlap, in " + std::to_string(segments.layers()) +
-                             " layers; each voxel needs one label: export the segmentation as a label map "
-                             "(3D Slicer: Segmentations, Export/import), or save it without overlap");
-  const std::string encoding = header.lower_text("encoding");
-  const bool gzip = encoding == "gzip" || encoding == "gz";
-  const bool as_text = encoding == "txt" || encoding == "text" || encoding == "ascii";
-  if (!gzip && !as_text && encoding != "raw")
-    header.fail("encoding",
-                "encoding " + in_quotes(encoding) + " is not supported; save the volume as raw or gzip");
-  LabelVolume volume = NrrdHeader(header).volume();
-  segments.give_names_and_colours(volume);
-  check_geometry(volume, name);
-  VoxelFormat format;
-  format.type = nrrd_voxel_type(header);
-
-  const std::string data_field = header.any_of({"data file", "datafile"});
+  NrrdFile nrrd(in, max_volume_voxels);
+  const HeaderFields& header = nrrd.fields;
+  LabelVolume& volume = nrrd.volume;
   DataFile file{name, {}};
-  const bool detached = header.has(data_field);
-  if (detached) file = read_data_file(header, data_field, read);
-  TextScanner body = detached ? TextScanner(file.bytes, file.path) : in;
+  if (nrrd.detached) file = read_data_file(header, nrrd.data_field, read);
+  TextScanner body = nrrd.detached ? TextScanner(file.bytes, file.path) : in;
   // Voxels may begin with the bytes of a byte order mark, which the scanner would skip.
-  const std::size_t begin = detached ? 0 : body.offset();
+  const std::size_t begin = nrrd.detached ? 0 : body.offset();
   const std::size_t behind_lines = skip_lines(header, body);
-  const bool has_lines = optional_integer(header, header.any_of({"line skip", "lineskip"})) > 0;
-  std::string_view data =
-      (detached ? std::string_view(file.bytes) : bytes).substr(has_lines ? behind_lines : begin);
-
-  const std::string skip_field = header.any_of({"byte skip", "byteskip"});
-  const std::int64_t skip = optional_integer(header, skip_field);
-  if (skip < -1 || (skip == -1 && encoding != "raw"))
-    header.fail(skip_field, std::to_string(skip) + " bytes to skip" +
-                                (skip == -1 ? ", which is allowed only for raw data" : ""));
-  if (as_text) {
+  std::string_view data = (nrrd.detached ? std::string_view(file.bytes) : bytes)
+                              .substr(nrrd.lines_to_skip > 0 ? behind_lines : begin);
+  nrrd.check_skip();
+  const std::int64_t skip = nrrd.bytes_to_skip;
+  if (nrrd.encoding == NrrdEncoding::text) {
     if (body.take_bytes(static_cast<std::size_t>(skip)).size() < static_cast<std::size_t>(skip))
-      header.fail(skip_field, std::to_string(skip) + " bytes to skip, but the data are shorter");
+      header.fail(nrrd.skip_field, std::to_string(skip) + " bytes to skip, but the data are shorter");
     volume.labels = read_voxels_as_text(body, volume.size);
-    return volume;
+    return std::move(volume);
   }
-  format.swap = is_swapped(header, format.type);
-  if (skip == -1) {
-    std::uint64_t needed = voxel_bytes(format.type);
-    for (const int n : volume.size) needed *= static_cast<std::uint64_t>(n);
-    if (needed < data.size()) data.remove_prefix(data.size() - static_cast<std::size_t>(needed));
-  }
-  ByteSource source(data, gzip ? ByteSource::Packing::deflate : ByteSource::Packing::none, file.path);
+  nrrd.format.swap = is_swapped(header, nrrd.format.type);
+  if (skip == -1)
+    data.remove_prefix(static_cast<std::size_t>(offset_from_end(data.size(), volume.size, nrrd.format.type)));
+  ByteSource source(
+      data, nrrd.encoding == NrrdEncoding::gzip ? ByteSource::Packing::deflate : ByteSource::Packing::none,
+      file.path);
   if (skip > 0 && source.skip(static_cast<std::uint64_t>(skip)) < static_cast<std::uint64_t>(skip))
-    header.fail(skip_field,
+    header.fail(nrrd.skip_field,
                 std::to_string(skip) + " bytes to skip, but the data have " + std::to_string(source.taken()));
-  volume.labels = read_voxels(source, format, volume.size);
-  return volume;
+  volume.labels = read_voxels(source, nrrd.format, volume.size);
+  return std::move(volume);
+}
+
+std::optional<RawVolume> find_nrrd(const HeaderBytes& head, const std::string& name) {
+  // An empty line ends a header before voxels.
+  if (!head.whole_file() && head.bytes.find("\n\n") == std::string_view::npos &&
+      head.bytes.find("\n\r\n") == std::string_view::npos)
+    return std::nullopt;
+  TextScanner in(head.bytes, name);
+  const NrrdFile nrrd(in, max_source_voxels);
+  // Lines are found by reading, and are unusual before raw voxels.
+  if (nrrd.encoding != NrrdEncoding::raw || nrrd.lines_to_skip != 0) return std::nullopt;
+  nrrd.check_skip();
+  RawVolume found{nrrd.volume, name, in.offset(), nrrd.format};
+  found.format.swap = is_swapped(nrrd.fields, nrrd.format.type);
+  std::uint64_t size = head.file_size;
+  if (nrrd.detached) {
+    found.file = data_file_path(nrrd.fields, nrrd.data_field);
+    found.offset = 0;
+    size = data_file_size(nrrd.fields, nrrd.data_field);
+  }
+  if (nrrd.bytes_to_skip == -1)
+    found.offset += offset_from_end(size - found.offset, found.grid.size, found.format.type);
+  else if (static_cast<std::uint64_t>(nrrd.bytes_to_skip) > size - found.offset)
+    nrrd.fields.fail(nrrd.skip_field, std::to_string(nrrd.bytes_to_skip) +
+                                          " bytes to skip, but the data have " +
+                                          std::to_string(size - found.offset));
+  else
+    found.offset += static_cast<std::uint64_t>(nrrd.bytes_to_skip);
+  return found;
 }
 
 }  // namespace tetwright

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "common/io/volumes/data_file.h"
+#include "common/io/volumes/raw_volume.h"
 #include "tetwright/files.h"
 #include "tetwright/label_volume.h"
 
@@ -21,6 +22,9 @@ namespace tetwright {
 /// \throws InputError with the line of the header for malformed contents
 LabelVolume read_nrrd(std::string_view bytes, const std::string& name,
                       const FileReader& read = read_whole_file);
+
+/// RawVolumeFinder of NRRD.
+std::optional<RawVolume> find_nrrd(const HeaderBytes& head, const std::string& name);
 
 /// Content of an NRRD file: attached, gzip, in the smallest integer type that holds all labels. Origin and
 /// directions round-trip bit by bit.

@@ -18,16 +18,14 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::int64_t max_voxels = std::int64_t{1} << 31;
-
 /// Number of bytes of compressed voxels that are inflated and converted at a time.
 constexpr std::size_t block_bytes = std::size_t{1} << 22;
 
 constexpr std::size_t voxel_grain = std::size_t{1} << 17;
 
-std::size_t voxel_count(const std::array<int, 3>& size) {
-  return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *
-         static_cast<std::size_t>(size[2]);
+std::uint64_t voxel_count(const std::array<int, 3>& size) {
+  return static_cast<std::uint64_t>(size[0]) * static_cast<std::uint64_t>(size[1]) *
+         static_cast<std::uint64_t>(size[2]);
 }
 
 std::string text(const std::array<int, 3>& size) {
@@ -101,12 +99,15 @@ auto with_type(VoxelType type, const Call& call) {
   }
 }
 
-/// Message "voxel (1, 2, 3) has the value 0.5, ..." with the reason why the value is not a label.
-std::string bad_voxel(std::size_t voxel, const std::array<int, 3>& size, const std::string& value,
-                      bool whole) {
+std::array<int, 3> voxel_at(std::size_t voxel, const std::array<int, 3>& size) {
   const auto nx = static_cast<std::size_t>(size[0]), ny = static_cast<std::size_t>(size[1]);
-  return "voxel (" + std::to_string(voxel % nx) + ", " + std::to_string(voxel / nx % ny) + ", " +
-         std::to_string(voxel / nx / ny) + ") has the value " + value +
+  return {static_cast<int>(voxel % nx), static_cast<int>(voxel / nx % ny), static_cast<int>(voxel / nx / ny)};
+}
+
+/// Message "voxel (1, 2, 3) has the value 0.5, ..." with the reason why the value is not a label.
+std::string bad_value(const std::array<int, 3>& voxel, const std::string& value, bool whole) {
+  return "voxel (" + std::to_string(voxel[0]) + ", " + std::to_string(voxel[1]) + ", " +
+         std::to_string(voxel[2]) + ") has the value " + value +
          (whole ? ", which is not a 32-bit label; number the labels from 0"
                 : ", not a whole number; a volume of labels is needed, not an image");
 }
@@ -117,8 +118,46 @@ std::size_t voxel_bytes(VoxelType type) {
   return with_type(type, [](auto number) { return sizeof(number); });
 }
 
+std::uint64_t voxel_data_bytes(const std::array<int, 3>& size, VoxelType type) {
+  return voxel_count(size) * voxel_bytes(type);
+}
+
+std::string needed_bytes(const std::array<int, 3>& size, VoxelType type) {
+  const std::size_t each = voxel_bytes(type);
+  return "its " + text(size) + " voxels of " + std::to_string(each) +
+         (each == 1 ? " byte need " : " bytes need ") + std::to_string(voxel_data_bytes(size, type)) +
+         " bytes, but ";
+}
+
+std::size_t convert_row(const char* from, std::size_t step, std::size_t n, const VoxelFormat& format,
+                        MaterialTag* labels) {
+  const bool scaled = format.slope != 1 || format.intercept != 0;
+  return with_type(format.type, [&](auto number) {
+    for (std::size_t i = 0; i < n; ++i)
+      if (!to_label<decltype(number)>(from + i * step, format, scaled, labels[i])) return i;
+    return n;
+  });
+}
+
+std::string bad_voxel(const std::array<int, 3>& voxel, const char* from, const VoxelFormat& format) {
+  return with_type(format.type, [&](auto number) {
+    using Stored = decltype(number);
+    const auto stored = load<Stored>(from, format.swap);
+    std::string value;
+    bool whole = std::is_integral_v<Stored>;
+    if (format.slope != 1 || format.intercept != 0 || !whole) {
+      const double scaled = format.slope * static_cast<double>(stored) + format.intercept;
+      append_number(value, scaled);
+      whole = std::isfinite(scaled) && scaled == std::floor(scaled);
+    } else {
+      append_number(value, stored);
+    }
+    return bad_value(voxel, value, whole);
+  });
+}
+
 std::array<int, 3> checked_size(std::span<const std::int64_t> sizes, const std::string& file,
-                                std::size_t line) {
+                                std::size_t line, std::int64_t max_voxels) {
   if (sizes.size() != 3) throw InputError(file, line, std::to_string(sizes.size()) + " axes; a volume has 3");
   std::array<int, 3> out;
   std::int64_t voxels = 1;
@@ -141,13 +180,9 @@ std::array<int, 3> checked_size(std::span<const std::int64_t> sizes, const std::
 std::vector<MaterialTag> read_voxels(ByteSource& body, const VoxelFormat& format,
                                      const std::array<int, 3>& size) {
   const std::size_t n = voxel_count(size), each = voxel_bytes(format.type);
-  const std::uint64_t needed = static_cast<std::uint64_t>(n) * each;
-  const auto needs = [&] {
-    return "its " + text(size) + " voxels of " + std::to_string(each) +
-           (each == 1 ? " byte need " : " bytes need ") + std::to_string(needed) + " bytes, but ";
-  };
+  const std::uint64_t needed = voxel_data_bytes(size, format.type);
   if (needed > body.max_left())
-    throw InputError(body.name() + ": " + needs() +
+    throw InputError(body.name() + ": " + needed_bytes(size, format.type) +
                      (body.packed()
                           ? "the compressed data hold " + std::to_string(body.max_left()) +
                                 " at most; the file is truncated or its header is wrong"
@@ -162,24 +197,15 @@ std::vector<MaterialTag> read_voxels(ByteSource& body, const VoxelFormat& format
     const std::size_t wanted = body.packed() ? std::min(n - done, block_bytes / each) : n - done;
     const std::string_view bytes = body.take(wanted * each);
     if (bytes.size() < wanted * each)
-      throw InputError(body.name() + ": " + needs() + "only " + std::to_string(body.taken() - before) +
-                       " are there; the file is truncated");
+      throw InputError(body.name() + ": " + needed_bytes(size, format.type) + "only " +
+                       std::to_string(body.taken() - before) + " are there; the file is truncated");
     labels.resize(done + wanted);
     with_type(format.type, [&](auto number) {
       using Stored = decltype(number);
       const std::size_t bad = convert<Stored>(bytes.data(), wanted, format, labels.data() + done);
       if (bad == wanted) return;
-      const auto stored = load<Stored>(bytes.data() + bad * each, format.swap);
-      std::string value;
-      bool whole = std::is_integral_v<Stored>;
-      if (format.slope != 1 || format.intercept != 0 || !whole) {
-        const double scaled = format.slope * static_cast<double>(stored) + format.intercept;
-        append_number(value, scaled);
-        whole = std::isfinite(scaled) && scaled == std::floor(scaled);
-      } else {
-        append_number(value, stored);
-      }
-      throw InputError(body.name() + ": " + bad_voxel(done + bad, size, value, whole));
+      throw InputError(body.name() + ": " +
+                       bad_voxel(voxel_at(done + bad, size), bytes.data() + bad * each, format));
     });
   }
   body.check_end();
@@ -201,7 +227,8 @@ std::vector<MaterialTag> read_voxels_as_text(TextScanner& body, const std::array
                 " voxels; it is truncated");
     if (!parse_number(word, value)) body.fail("expected the number of a voxel, found " + in_quotes(word));
     if (!to_label(value, labels[i]))
-      body.fail(bad_voxel(i, size, in_quotes(word), std::isfinite(value) && value == std::floor(value)));
+      body.fail(
+          bad_value(voxel_at(i, size), in_quotes(word), std::isfinite(value) && value == std::floor(value)));
   }
   return labels;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tetwright/io.h"
 
+#include "common/io/volumes/volume_formats.h"
 #include "tests/common/io/expect_error.h"
 #include "tests/common/io/file_test.h"
 #include "tests/common/io/tricky_meshes.h"
@@ -33,13 +34,19 @@ TEST_F(Formats, KindsByExtension) {
 
 TEST_F(Formats, VolumesAndTheirCompoundExtensions) {
   for (const char* name :
-       {"a.nrrd", "a.NHDR", "a.mhd", "a.mha", "a.nii", "b/a.x.nii.GZ", "a.inr", "a.inr.gz"})
+       {"a.nrrd", "a.NHDR", "a.mhd", "a.mha", "a.nii", "b/a.x.nii.GZ", "a.inr", "a.inr.gz", "a.zarr",
+        "a.ome.ZARR/0", "b/a.zarr/labels/cells/", "a.TIF", "a.tiff", "a.h5", "a.hdf5", "b/a.H5:/x/y.z"})
     EXPECT_EQ(file_kind(name), FileKind::volume) << name;
-  for (const char* name : {"a.gz", "a.vtu.gz", "nii.gz", "a.nii.gz.x"})
+  for (const char* name :
+       {"a.gz", "a.vtu.gz", "nii.gz", "a.nii.gz.x", "zarr", "a.zarr.x", "a.h5:x", "a.h5/x"})
     EXPECT_EQ(file_kind(name), FileKind::unknown) << name;
+  EXPECT_EQ(file_kind("a.zarr/b.ply"), FileKind::surface);
+  EXPECT_EQ(volume_path("a.zarr/b.nrrd").extension, ".nrrd");
+  EXPECT_EQ(volume_path("a.zarr/b.c").extension, ".zarr");
   EXPECT_EQ(file_kind("a.nrrd", FileUse::write), FileKind::volume);
   EXPECT_EQ(file_kind("a.nii.gz", FileUse::write), FileKind::unknown);
-  EXPECT_EQ(known_extensions(FileKind::volume), ".nrrd .nhdr .mhd .mha .nii .nii.gz .hdr .img .inr .inr.gz");
+  EXPECT_EQ(known_extensions(FileKind::volume),
+            ".nrrd .nhdr .mhd .mha .nii .nii.gz .hdr .img .inr .inr.gz .zarr .tif .tiff .h5 .hdf5");
   EXPECT_EQ(known_extensions(FileKind::volume, FileUse::write), ".nrrd");
   EXPECT_EQ(file_stem("a/b.c/liver.NII.gz"), "liver");
   EXPECT_EQ(file_stem("liver.v2.inr.gz"), "liver.v2");

@@ -50,6 +50,13 @@ std::vector<std::string> findings_of(const LabelInput& prepared) {
 using Regions = std::vector<RegionIndex>;
 using Texts = std::vector<std::string>;
 
+TEST(LabelInput, SpacingThatTheFileDoesNotGiveIsNoted) {
+  LabelVolume volume = volume_of({0, 1, 2});
+  volume.spacing_assumed = true;
+  EXPECT_EQ(findings_of(make_label_input(volume, "scan.nrrd", unmerged(), nullptr)),
+            (Texts{"1 volume whose file gives no spacing: each voxel has the size 1"}));
+}
+
 TEST(LabelInput, AllLabelsButTheOutsideOneAreMeshed) {
   LabelChoice choice = unmerged();
   choice.names = {{5, "liver"}, {6, "not there"}};

@@ -6,12 +6,14 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "tetwright/files.h"
+#include "tetwright/label_source.h"
 #include "tetwright/label_volume.h"
 #include "tetwright/surface_mesh.h"
 #include "tetwright/tet_mesh.h"
@@ -211,11 +213,13 @@ std::map<MaterialTag, std::string> parse_label_names(
 
 class OutputFiles;
 
-/// Kind of a file, determined by the extension in upper or lower case.
+/// Kind of a file, determined by the extension in upper or lower case, or of a folder to read, by its files.
 enum class FileKind {
   surface,   ///< .ply .obj .stl .off .vtp; read only: .3mf .glb
   tet_mesh,  ///< see tet_format_table()
-  volume,    ///< .nrrd; read only: .nhdr .mhd .mha .nii .nii.gz .inr .inr.gz
+  /// .nrrd; read only: .nhdr .mhd .mha .nii .nii.gz .hdr .img .inr .inr.gz, .zarr .tif .tiff .h5 .hdf5, and
+  /// folders with zarr arrays or TIFF files
+  volume,
   unknown
 };
 
@@ -286,6 +290,29 @@ std::string file_stem(const std::string& path);
 TriangleMesh read_surface(const std::string& path, std::vector<Dropped>* dropped = nullptr);
 ReadTetMesh read_tet_mesh(const std::string& path, const ReadTetMeshOptions& options = {});
 LabelVolume read_label_volume(const std::string& path);
+
+struct LabelSourceOptions {
+  /// Decoded chunks that the source keeps, bytes. Each concurrent call of LabelSource::read() takes the
+  /// memory of a chunk beside them, encoded and decoded.
+  std::size_t cache_bytes = std::size_t{1} << 28;
+};
+
+/// Opens a segmented volume to read its labels box by box.
+///
+/// - Uncompressed .nrrd, .nhdr, .mhd, .mha, .nii, .hdr and .img files are read by ranges of bytes.
+/// - `.zarr` folders (zarr 2 and 3, OME-Zarr), `FOLDER.zarr/ARRAY` and other folders with the metadata of
+/// zarr
+///   are decoded by chunks, `.h5` and `.hdf5` files, `FILE.h5:/DATASET`, too.
+/// - `.tif` and `.tiff` files and folders of them are decoded by strips and tiles.
+/// - Compressed .nrrd, .nhdr, .mhd, .mha, .nii and .nii.gz files, text, and .inr files are read as a whole
+/// and
+///   served from memory: LabelSource::in_memory().
+///
+/// The axis that varies fastest in the file is the first one: x of arrays with the axes z, y, x.
+/// \throws UsageError if the path is not that of a volume
+/// \throws InputError if it is missing, unreadable or malformed, or has no volume of labels
+std::unique_ptr<LabelSource> open_label_source(const std::string& path,
+                                               const LabelSourceOptions& options = {});
 
 /// Reads the bytes of a file, for example from a stream, in a format of one file.
 /// \param name file name for messages

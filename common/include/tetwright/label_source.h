@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tetwright/label_volume.h"
+
+namespace tetwright {
+
+/// Index of a voxel, or a corner of a box of voxels.
+using VoxelIndex = std::array<int, 3>;
+
+/// A segmented volume whose labels are read box by box, so that it need not fit into memory.
+///
+/// All functions may be called concurrently. open_label_source() of io.h opens files.
+class LabelSource {
+ public:
+  virtual ~LabelSource() = default;
+  LabelSource(const LabelSource&) = delete;
+  LabelSource& operator=(const LabelSource&) = delete;
+
+  const LabelGrid& grid() const { return grid_; }
+
+  /// Voxels along each axis of the blocks in which the labels are stored. Boxes whose corners are multiples
+  /// of it decode each block once. A block may extend beyond the grid.
+  virtual VoxelIndex block() const = 0;
+
+  /// Whether all labels are in memory, for example since their file is compressed as a whole.
+  virtual bool in_memory() const { return false; }
+
+  /// Reads the labels of the half-open box of voxels from `low` to `high`.
+  /// \param out receives the labels, the first axis fastest
+  /// \pre 0 <= low < high <= grid().size along each axis, and `out` has the size of the box
+  /// \throws InputError naming the file, and its chunk, page or voxel, if it cannot be read, is damaged, or
+  /// has
+  ///   a value that is not a 32-bit integer; `out` is then undefined
+  void read(const VoxelIndex& low, const VoxelIndex& high, std::span<MaterialTag> out) const;
+
+ protected:
+  explicit LabelSource(LabelGrid grid) : grid_(std::move(grid)) {}
+  virtual void read_box(const VoxelIndex& low, const VoxelIndex& high, std::span<MaterialTag> out) const = 0;
+
+ private:
+  LabelGrid grid_;
+};
+
+/// A source that serves the labels of a volume in memory.
+class MemoryLabelSource final : public LabelSource {
+ public:
+  /// \pre volume.labels has a label for each voxel
+  explicit MemoryLabelSource(LabelVolume volume);
+  VoxelIndex block() const override { return grid().size; }
+  bool in_memory() const override { return true; }
+
+ protected:
+  void read_box(const VoxelIndex& low, const VoxelIndex& high, std::span<MaterialTag> out) const override;
+
+ private:
+  std::vector<MaterialTag> labels_;
+};
+
+/// Reads all labels of a source, decoding blocks in parallel. The volume takes four bytes for each voxel.
+/// \param file file name for messages
+/// \throws InputError if there are more than 2^31 voxels, and as LabelSource::read() does: the error of the
+///   first block that has one, for any number of threads
+/// \throws OutputError if the labels exceed available_memory()
+LabelVolume read_all(const LabelSource& source, const std::string& file);
+
+/// Maximum number of voxels of a volume in memory.
+inline constexpr std::int64_t max_volume_voxels = std::int64_t{1} << 31;
+
+}  // namespace tetwright

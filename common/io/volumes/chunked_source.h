@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <list>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <unordered_map>
+
+#include "common/io/encodings/file_ranges.h"
+#include "common/io/volumes/voxel_data.h"
+#include "tetwright/label_source.h"
+
+namespace tetwright {
+
+/// Maximum number of bytes of a decoded chunk: a chunk is decoded as a whole, once for each thread.
+inline constexpr std::int64_t max_chunk_bytes = (std::int64_t{1} << 31) - 1;
+
+/// The chunks that were used last, up to a number of bytes. May be used concurrently; a chunk that several
+/// threads need at a time is loaded by one of them.
+class ChunkCache {
+ public:
+  /// Null data: the chunk is not in the file.
+  using Chunk = std::shared_ptr<const ByteBuffer>;
+
+  explicit ChunkCache(std::size_t max_bytes) : max_bytes_(max_bytes) {}
+
+  /// Returns the chunk, and calls `load` if it is not kept. Rethrows an exception of `load`, and keeps
+  /// nothing then.
+  Chunk get(std::uint64_t key, const std::function<ByteBuffer()>& load);
+
+ private:
+  struct Entry {
+    Chunk chunk;  ///< null while a thread loads it
+    std::list<std::uint64_t>::iterator used;
+  };
+  void keep(std::uint64_t key, const Chunk& chunk);
+
+  std::mutex mutex_;
+  std::condition_variable loaded_;
+  std::unordered_map<std::uint64_t, Entry> entries_;
+  std::list<std::uint64_t> used_;  ///< keys of loaded chunks, the last used one first
+  std::size_t max_bytes_, bytes_ = 0;
+};
+
+/// Shape of the decoded chunks of a volume. All chunks are whole, also where they extend beyond the grid.
+struct ChunkLayout {
+  VoxelIndex size{};                     ///< voxels along each axis
+  std::array<std::size_t, 3> strides{};  ///< from one voxel to the next along each axis, bytes
+  std::size_t bytes = 0;                 ///< size of a chunk
+  VoxelFormat format;
+};
+
+/// Checks the size of a chunk with voxels of `each` bytes.
+/// \return its bytes
+/// \throws InputError if they are more than max_chunk_bytes
+std::int64_t checked_chunk_bytes(std::span<const std::int64_t> size, std::size_t each,
+                                 const std::string& file);
+
+/// A volume in chunks of equal size, decoded one by one.
+class ChunkedSource : public LabelSource {
+ public:
+  VoxelIndex block() const override { return layout_.size; }
+
+ protected:
+  /// \param cache_bytes decoded chunks that are kept, bytes
+  ChunkedSource(LabelGrid grid, const ChunkLayout& layout, std::size_t cache_bytes);
+  const ChunkLayout& layout() const { return layout_; }
+
+  /// Reads and decodes a chunk. Is called concurrently.
+  /// \param chunk its number along each axis
+  /// \return its voxels, or a buffer without data if it is not in the file
+  virtual ByteBuffer load_chunk(const VoxelIndex& chunk) const = 0;
+  /// File and chunk for messages.
+  virtual std::string chunk_name(const VoxelIndex& chunk) const = 0;
+  /// Label of all voxels of a chunk that is not in the file.
+  virtual MaterialTag fill_label(const VoxelIndex& chunk) const = 0;
+
+  void read_box(const VoxelIndex& low, const VoxelIndex& high, std::span<MaterialTag> out) const override;
+
+ private:
+  ChunkLayout layout_;
+  std::array<std::uint64_t, 3> chunks_{};  ///< along each axis
+  mutable ChunkCache cache_;
+};
+
+}  // namespace tetwright

@@ -1,0 +1,335 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/volumes/tiff_stack.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <limits>
+#include <mutex>
+#include <optional>
+#include <pugixml.hpp>
+#include <utility>
+#include <vector>
+
+#include "common/io/encodings/byte_order.h"
+#include "common/io/encodings/vtk_numbers.h"
+#include "common/io/volumes/chunked_source.h"
+#include "common/io/volumes/raw_volume.h"
+#include "common/io/volumes/tiff_pages.h"
+#include "common/lower_case.h"
+#include "common/trimmed.h"
+#include "tetwright/error.h"
+
+namespace tetwright {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Strips are joined to chunks of at least this size: a chunk of each row would cost more than its row.
+constexpr std::size_t min_strips_bytes = std::size_t{1} << 18;
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+/// Removes the digits at the beginning of a name, and returns them without leading zeros.
+std::string_view take_digits(std::string_view& name) {
+  std::size_t n = 0;
+  while (n < name.size() && is_digit(name[n])) ++n;
+  std::string_view digits = name.substr(0, n);
+  name.remove_prefix(n);
+  while (digits.size() > 1 && digits[0] == '0') digits.remove_prefix(1);
+  return digits;
+}
+
+bool is_tiff_file(const fs::directory_entry& entry) {
+  const std::string name = lower_case(entry.path().filename().string());
+  std::error_code error;
+  return !name.starts_with('.') && (name.ends_with(".tif") || name.ends_with(".tiff")) &&
+         entry.is_regular_file(error);
+}
+
+/// Where a page is, and how it is stored.
+struct StackPage {
+  std::uint64_t offset = 0;
+  TiffPage shape;
+};
+
+/// A stack of pages of one size and type.
+struct TiffStack {
+  std::vector<std::string> files;  ///< one with all pages, or one for each page
+  std::vector<StackPage> pages;
+  TiffDescription description;
+
+  std::string page_name(std::size_t page) const {
+    return files.size() > 1 ? files[page] : files[0] + ": page " + std::to_string(page + 1);
+  }
+
+  void add(TiffFile& file, const std::string& name) {
+    const StackPage page{file.offset(), file.page(name)};
+    if (pages.size() == static_cast<std::size_t>(std::numeric_limits<int>::max()))
+      throw InputError(name + ": it has more pages than a volume can have");
+    if (pages.empty()) {
+      description = file.description();
+      description.text.shrink_to_fit();
+    } else {
+      check_like_first(page.shape, name);
+    }
+    pages.push_back(page);
+  }
+
+ private:
+  void check_like_first(const TiffPage& page, const std::string& name) const {
+    const TiffPage& first = pages[0].shape;
+    if (page.width != first.width || page.height != first.height)
+      throw InputError(name + ": it has " + std::to_string(page.width) + " x " + std::to_string(page.height) +
+                       " pixels, and the first page " + std::to_string(first.width) + " x " +
+                       std::to_string(first.height) + "; all pages of a stack have one size");
+    if (page.type != first.type)
+      throw InputError(name + ": its samples have another type than those of the first page");
+    if (page.tiled != first.tiled || (page.tiled && page != first))
+      throw InputError(name + ": its tiles have another size than those of the first page; save it again");
+  }
+};
+
+TiffStack pages_of_file(const std::string& path) {
+  TiffStack stack;
+  stack.files.push_back(path);
+  TiffFile file(path);
+  do stack.add(file, stack.page_name(stack.pages.size()));
+  while (file.next());
+  return stack;
+}
+
+TiffStack pages_of_folder(const std::string& path) {
+  TiffStack stack;
+  std::error_code error;
+  for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
+    if (is_tiff_file(*entry)) stack.files.push_back(entry->path().string());
+  if (error) throw InputError("cannot read " + path + ": " + error.message());
+  if (stack.files.empty()) throw InputError(path + ": there is no .tif file in the folder");
+  std::sort(stack.files.begin(), stack.files.end(), natural_less);
+  if (stack.files.size() == 1) return pages_of_file(stack.files[0]);
+  for (const std::string& name : stack.files) {
+    TiffFile file(name);
+    stack.add(file, name);
+    if (file.next())
+      throw InputError(name +
+                       ": it has several pages, and the folder several files; give one file, or a folder "
+                       "of files of one page");
+  }
+  return stack;
+}
+
+class TiffStackSource final : public ChunkedSource {
+ public:
+  TiffStackSource(LabelGrid grid, const ChunkLayout& layout, std::size_t cache_bytes, TiffStack stack)
+      : ChunkedSource(std::move(grid), layout, cache_bytes), stack_(std::move(stack)) {}
+
+ protected:
+  ByteBuffer load_chunk(const VoxelIndex& chunk) const override {
+    const auto page = static_cast<std::size_t>(chunk[2]);
+    ByteBuffer out(layout().bytes);
+    TiffFile file = take_file(page);
+    if (stack_.pages[page].shape.tiled)
+      read_tile(file, chunk, out);
+    else
+      read_strips(file, chunk, out);
+    // After an exception the file is closed.
+    const std::lock_guard lock(mutex_);
+    if (stack_.files.size() == 1) idle_.push_back(std::move(file));
+    return out;
+  }
+
+  std::string chunk_name(const VoxelIndex& chunk) const override {
+    return stack_.page_name(static_cast<std::size_t>(chunk[2]));
+  }
+
+  MaterialTag fill_label(const VoxelIndex& /*chunk*/) const override { return 0; }  // no chunk is missing
+
+ private:
+  /// An open file that no other thread uses, at the page.
+  TiffFile take_file(std::size_t page) const {
+    if (stack_.files.size() > 1) return TiffFile(stack_.files[page]);
+    std::optional<TiffFile> file;
+    {
+      const std::lock_guard lock(mutex_);
+      if (!idle_.empty()) {
+        file.emplace(std::move(idle_.back()));
+        idle_.pop_back();
+      }
+    }
+    if (!file) file.emplace(stack_.files[0]);
+    file->go_to(stack_.pages[page].offset);
+    return std::move(*file);
+  }
+
+  void read_tile(const TiffFile& file, const VoxelIndex& chunk, ByteBuffer& out) const {
+    const auto across = static_cast<std::uint32_t>((grid().size[0] - 1) / layout().size[0] + 1);
+    file.read_piece(true,
+                    static_cast<std::uint32_t>(chunk[1]) * across + static_cast<std::uint32_t>(chunk[0]),
+                    out.data.get(), out.size, chunk_name(chunk));
+  }
+
+  /// Reads the strips that have rows in the chunk.
+  void read_strips(const TiffFile& file, const VoxelIndex& chunk, ByteBuffer& out) const {
+    const std::size_t row = layout().strides[1];
+    const std::int64_t height = grid().size[1],
+                       rows = stack_.pages[static_cast<std::size_t>(chunk[2])].shape.piece_height;
+    const std::int64_t begin = std::int64_t{chunk[1]} * layout().size[1],
+                       end = std::min(begin + layout().size[1], height);
+    ByteBuffer apart;  // a strip that has rows of other chunks, too
+    for (std::int64_t strip = begin / rows; strip * rows < end; ++strip) {
+      const std::int64_t first = strip * rows, last = std::min(first + rows, height);
+      const auto n = static_cast<std::size_t>(last - first) * row;
+      const bool inside = begin <= first && last <= end;
+      if (!inside && apart.size < n) apart = ByteBuffer(n);
+      char* to = inside ? out.data.get() + static_cast<std::size_t>(first - begin) * row : apart.data.get();
+      file.read_piece(false, static_cast<std::uint32_t>(strip), to, n, chunk_name(chunk));
+      if (inside) continue;
+      const std::int64_t from = std::max(first, begin), until = std::min(last, end);
+      std::memcpy(out.data.get() + static_cast<std::size_t>(from - begin) * row,
+                  to + static_cast<std::size_t>(from - first) * row,
+                  static_cast<std::size_t>(until - from) * row);
+    }
+  }
+
+  TiffStack stack_;
+  mutable std::mutex mutex_;
+  mutable std::vector<TiffFile> idle_;
+};
+
+/// Number after "key=" on a line of ImageJ's description.
+std::optional<double> imagej_number(std::string_view text, std::string_view key) {
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = trimmed(text.substr(0, end));
+    text.remove_prefix(std::min(end + 1, text.size()));
+    double value = 0;
+    if (line.starts_with(key) && line.substr(key.size()).starts_with('=') &&
+        parse_number(line.substr(key.size() + 1), value) && std::isfinite(value))
+      return value;
+  }
+  return std::nullopt;
+}
+
+void check_one_channel(const std::string& path, const char* what, double n) {
+  if (n > 1)
+    throw InputError(path + ": it has " + std::to_string(static_cast<std::int64_t>(n)) + " " + what +
+                     ", and each voxel needs one label; save one of them as a stack");
+}
+
+/// Spacing of OME-TIFF, or std::nullopt if the description has none.
+std::optional<Vec3> ome_spacing(const std::string& path, const std::string& text) {
+  pugi::xml_document document;
+  if (text.find("<OME") == std::string::npos || !document.load_string(text.c_str())) return std::nullopt;
+  const pugi::xml_node pixels = document.child("OME").child("Image").child("Pixels");
+  if (!pixels) return std::nullopt;
+  check_one_channel(path, "channels", pixels.attribute("SizeC").as_double());
+  check_one_channel(path, "times", pixels.attribute("SizeT").as_double());
+  if (!pixels.attribute("PhysicalSizeX")) return std::nullopt;
+  Vec3 spacing;
+  std::string unit;
+  for (int k = 0; k < 3; ++k) {
+    const std::string name = std::string("PhysicalSize") + "XYZ"[k];
+    spacing[k] = pixels.attribute(name.c_str()).as_double(1);
+    const std::string its = pixels.attribute((name + "Unit").c_str()).as_string();
+    if (k > 0 && its != unit)
+      throw InputError(path + ": the spacings of its axes have different units; store them in one unit");
+    unit = its;
+  }
+  return spacing;
+}
+
+/// Spacing of the voxels, or std::nullopt if the file says nothing of it.
+std::optional<Vec3> spacing_of(const std::string& path, const TiffDescription& first) {
+  const auto known = [](double resolution) {
+    return std::isfinite(resolution) && resolution > 0 && resolution != 1;
+  };
+  const auto step = [&](double resolution, double unit) {
+    return known(resolution) ? (unit > 0 ? unit : 1.0) / resolution : 1.0;
+  };
+  if (std::optional<Vec3> ome = ome_spacing(path, first.text)) return ome;
+  const std::optional<double> between = imagej_number(first.text, "spacing");
+  if (first.text.starts_with("ImageJ=") || between) {
+    check_one_channel(path, "channels", imagej_number(first.text, "channels").value_or(1));
+    check_one_channel(path, "times", imagej_number(first.text, "frames").value_or(1));
+    if (!between && !known(first.resolution_x)) return std::nullopt;
+    // ImageJ takes the amount, too.
+    const double z = between && *between != 0 ? std::fabs(*between) : 1;
+    return Vec3(step(first.resolution_x, 0), step(first.resolution_y, 0), z);
+  }
+  if (!known(first.resolution_x)) return std::nullopt;
+  const double x = step(first.resolution_x, first.unit_mm);
+  return Vec3(x, step(first.resolution_y, first.unit_mm), x);
+}
+
+/// ImageJ writes stacks of more than 4 GB as one page, which other pages without an entry follow.
+std::optional<RawVolume> follow_first_page(const TiffStack& stack, const LabelGrid& grid) {
+  const TiffDescription& first = stack.description;
+  const auto images = imagej_number(first.text, "images");
+  if (stack.pages.size() != 1 || !images || !first.text.starts_with("ImageJ=") || first.compressed ||
+      stack.pages[0].shape.tiled || !(*images > 1 && *images <= std::numeric_limits<int>::max()))
+    return std::nullopt;
+  RawVolume raw{grid, stack.files[0], first.first_offset, {}};
+  raw.grid.size[2] = static_cast<int>(*images);
+  raw.format.type = stack.pages[0].shape.type;
+  raw.format.swap = first.big_endian == little_endian_machine;
+  return raw;
+}
+
+}  // namespace
+
+bool natural_less(std::string_view a, std::string_view b) {
+  const std::string_view whole_a = a, whole_b = b;
+  while (!a.empty() && !b.empty()) {
+    if (is_digit(a[0]) && is_digit(b[0])) {
+      const std::string_view left = take_digits(a), right = take_digits(b);
+      if (left.size() != right.size()) return left.size() < right.size();
+      if (left != right) return left < right;
+      continue;
+    }
+    if (a[0] != b[0]) return static_cast<unsigned char>(a[0]) < static_cast<unsigned char>(b[0]);
+    a.remove_prefix(1);
+    b.remove_prefix(1);
+  }
+  if (a.empty() != b.empty()) return a.empty();
+  return whole_a < whole_b;
+}
+
+bool has_tiff_files(const std::string& folder) {
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (is_tiff_file(*entry)) return true;
+  return false;
+}
+
+std::unique_ptr<LabelSource> open_tiff_stack(const std::string& path, std::size_t cache_bytes) {
+  std::error_code error;
+  TiffStack stack = fs::is_directory(path, error) ? pages_of_folder(path) : pages_of_file(path);
+  const TiffPage& first = stack.pages[0].shape;
+  LabelGrid grid;
+  const std::array<std::int64_t, 3> size{first.width, first.height,
+                                         static_cast<std::int64_t>(stack.pages.size())};
+  grid.size = checked_size(size, path, 0, max_source_voxels);
+  if (const std::optional<Vec3> spacing = spacing_of(stack.files[0], stack.description))
+    grid.directions = spacing->asDiagonal();
+  else
+    grid.spacing_assumed = true;
+  check_geometry(grid, path);
+  if (std::optional<RawVolume> raw = follow_first_page(stack, grid)) return open_raw_volume(std::move(*raw));
+  ChunkLayout layout;
+  layout.format.type = first.type;
+  const std::size_t each = voxel_bytes(first.type);
+  std::size_t rows = first.piece_height;
+  if (!first.tiled) {
+    const std::size_t joined = min_strips_bytes / (rows * first.width * each);
+    rows = std::min<std::size_t>(rows * std::max<std::size_t>(joined, 1), first.height);
+  }
+  layout.size = {static_cast<int>(first.piece_width), static_cast<int>(rows), 1};
+  layout.strides = {each, first.piece_width * each, rows * first.piece_width * each};
+  layout.bytes = layout.strides[2];
+  return std::make_unique<TiffStackSource>(std::move(grid), layout, cache_bytes, std::move(stack));
+}
+
+}  // namespace tetwright

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/volumes/volume_axes.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include "common/message_text.h"
+#include "tetwright/error.h"
+
+namespace tetwright {
+
+namespace {
+
+std::string axis_text(std::span<const std::string> names, std::size_t axis) {
+  return "axis " +
+         (axis < names.size() && !names[axis].empty() ? in_quotes(names[axis]) : std::to_string(axis));
+}
+
+/// Axes that are called x, y and z, or none if one is missing.
+std::vector<std::size_t> axes_by_name(std::span<const std::string> names) {
+  std::vector<std::size_t> axes;
+  for (const char* name : {"x", "y", "z"}) {
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) return {};
+    axes.push_back(static_cast<std::size_t>(found - names.begin()));
+  }
+  return axes;
+}
+
+/// The last axes; those of one item are left out first, from the first axis on.
+std::vector<std::size_t> last_axes(std::span<const std::int64_t> shape) {
+  std::vector<std::size_t> kept = row_major_order(shape.size());
+  for (std::size_t k = 0; k < kept.size() && kept.size() > 3;)
+    if (shape[kept[k]] == 1)
+      kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(k));
+    else
+      ++k;
+  if (kept.size() > 3) kept.erase(kept.begin(), kept.end() - 3);
+  std::reverse(kept.begin(), kept.end());
+  return kept;
+}
+
+}  // namespace
+
+std::array<std::size_t, 3> spatial_axes(std::span<const std::int64_t> shape,
+                                        std::span<const std::string> names, const std::string& file) {
+  if (shape.size() < 3)
+    throw InputError(file, 0, std::to_string(shape.size()) + " axes; a volume of labels has 3");
+  std::vector<std::size_t> axes;
+  if (names.size() == shape.size()) axes = axes_by_name(names);
+  if (axes.empty()) axes = last_axes(shape);
+  for (std::size_t k = 0; k < shape.size(); ++k)
+    if (shape[k] != 1 && std::find(axes.begin(), axes.end(), k) == axes.end())
+      throw InputError(file, 0,
+                       axis_text(names, k) + " has " + std::to_string(shape[k]) +
+                           " items, and each voxel needs one label; save one of them (one time, one channel) "
+                           "as an array of three axes");
+  return {axes[0], axes[1], axes[2]};
+}
+
+std::vector<std::size_t> strides_of(std::span<const std::int64_t> shape, std::span<const std::size_t> order) {
+  std::vector<std::size_t> strides(shape.size());
+  std::size_t stride = 1;
+  for (std::size_t k = order.size(); k-- > 0;) {
+    strides[order[k]] = stride;
+    stride *= static_cast<std::size_t>(shape[order[k]]);
+  }
+  return strides;
+}
+
+std::vector<std::size_t> row_major_order(std::size_t axes) {
+  std::vector<std::size_t> order(axes);
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  return order;
+}
+
+}  // namespace tetwright

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/volumes/volume_formats.h"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+
+#include "common/files/file_names.h"
+#include "common/io/volumes/hdf5_volume.h"
+#include "common/io/volumes/inr.h"
+#include "common/io/volumes/metaimage.h"
+#include "common/io/volumes/nifti.h"
+#include "common/io/volumes/nrrd.h"
+#include "common/io/volumes/tiff_stack.h"
+#include "common/io/volumes/zarr.h"
+#include "common/lower_case.h"
+#include "tetwright/files.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Chunks that are kept while a whole volume is read: each is needed once.
+constexpr std::size_t whole_volume_cache = std::size_t{1} << 24;
+
+LabelVolume read_inr_alone(std::string_view bytes, const std::string& name, const FileReader& /*others*/) {
+  return read_inr(bytes, name);
+}
+
+std::unique_ptr<LabelSource> open_zarr_path(const VolumePath& path, std::size_t cache_bytes) {
+  return open_zarr(path.file, cache_bytes);
+}
+
+std::unique_ptr<LabelSource> open_tiff_path(const VolumePath& path, std::size_t cache_bytes) {
+  return open_tiff_stack(path.file, cache_bytes);
+}
+
+std::unique_ptr<LabelSource> open_hdf5_path(const VolumePath& path, std::size_t cache_bytes) {
+  return open_hdf5_volume(path.file, path.inside, cache_bytes);
+}
+
+constexpr std::array<VolumeFormat, 15> formats_of_volumes{
+    {{.extension = ".nrrd", .read = read_nrrd, .find = find_nrrd, .write = write_nrrd},
+     {.extension = ".nhdr", .read = read_nrrd, .find = find_nrrd, .one_file = false},
+     {.extension = ".mhd", .read = read_metaimage, .find = find_metaimage, .one_file = false},
+     {.extension = ".mha", .read = read_metaimage, .find = find_metaimage},
+     {.extension = ".nii", .read = read_nifti, .find = find_nifti},
+     {.extension = ".nii.gz", .read = read_nifti, .find = find_nifti},
+     {.extension = ".hdr", .read = read_nifti, .find = find_nifti, .one_file = false},
+     {.extension = ".img", .read = read_nifti, .find = find_nifti, .header = ".hdr", .one_file = false},
+     {.extension = ".inr", .read = read_inr_alone},
+     {.extension = ".inr.gz", .read = read_inr_alone},
+     {.extension = ".zarr", .open = open_zarr_path},
+     {.extension = ".tif", .open = open_tiff_path},
+     {.extension = ".tiff", .open = open_tiff_path},
+     {.extension = ".h5", .open = open_hdf5_path},
+     {.extension = ".hdf5", .open = open_hdf5_path}}};
+
+/// Whether a folder of the path is a zarr hierarchy by its name.
+bool is_in_zarr(const std::string& path) {
+  for (const std::filesystem::path& part : std::filesystem::path(path))
+    if (lower_case(part.extension().string()) == ".zarr") return true;
+  return false;
+}
+
+}  // namespace
+
+VolumePath volume_path(const std::string& path) {
+  const std::string lower = lower_case(path);
+  for (const std::string extension : {".h5", ".hdf5"})
+    if (const std::size_t at = lower.find(extension + ":/"); at != std::string::npos) {
+      const std::size_t colon = at + extension.size();
+      return {path.substr(0, colon), path.substr(colon + 1), extension};
+    }
+  VolumePath out{path, {}, extension_of(path)};
+  if (std::any_of(formats_of_volumes.begin(), formats_of_volumes.end(),
+                  [&](const VolumeFormat& format) { return out.extension == format.extension; }))
+    return out;
+  if (is_in_zarr(path)) {
+    out.extension = ".zarr";
+  } else if (std::error_code error; std::filesystem::is_directory(path, error)) {
+    if (is_zarr_folder(path))
+      out.extension = ".zarr";
+    else if (has_tiff_files(path))
+      out.extension = ".tif";
+  }
+  return out;
+}
+
+std::span<const VolumeFormat> volume_formats() { return formats_of_volumes; }
+
+std::unique_ptr<LabelSource> open_by_boxes(const VolumeFormat& format, const std::string& path,
+                                           std::size_t cache_bytes) {
+  if (format.open) return format.open(volume_path(path), cache_bytes);
+  if (!format.find) return nullptr;
+  return find_raw_volume(format.header ? with_extension(path, format.header) : path, format.find);
+}
+
+LabelVolume read_whole_volume(const VolumeFormat& format, const std::string& path) {
+  if (const auto source = open_by_boxes(format, path, whole_volume_cache)) return read_all(*source, path);
+  const std::string first = format.header ? with_extension(path, format.header) : path;
+  return format.read(read_whole_file(first), first, read_whole_file);
+}
+
+}  // namespace tetwright

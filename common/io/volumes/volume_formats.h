@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "common/io/volumes/data_file.h"
+#include "common/io/volumes/raw_volume.h"
+#include "tetwright/label_source.h"
+
+namespace tetwright {
+
+/// A file or folder with volumes, and the volume in it.
+struct VolumePath {
+  std::string file;
+  std::string inside;     ///< path of a dataset in an HDF5 file; empty: the only one
+  std::string extension;  ///< of the format, in lower case; empty: none is known
+};
+
+/// Splits FILE.h5:/DATASET. Other paths have the format of their extension, or if that is none of a volume,
+/// that of a folder: zarr arrays, also inside FOLDER.zarr, or TIFF files.
+VolumePath volume_path(const std::string& path);
+
+/// A format of segmented volumes. It is read as bytes, or opened by name.
+struct VolumeFormat {
+  const char* extension;
+  LabelVolume (*read)(std::string_view bytes, const std::string& name, const FileReader& others) = nullptr;
+  RawVolumeFinder find = nullptr;  ///< null: voxels are always read as a whole
+  std::unique_ptr<LabelSource> (*open)(const VolumePath& path, std::size_t cache_bytes) = nullptr;
+  std::string (*write)(const LabelVolume& volume) = nullptr;  ///< null: the format can only be read
+  const char* header = nullptr;                               ///< extension of the header file
+  bool one_file = true;                                       ///< false: the voxels are in another file
+};
+
+std::span<const VolumeFormat> volume_formats();
+
+/// Opens a volume that is read by boxes.
+/// \return null if the file can only be read as a whole, since it is compressed or text
+std::unique_ptr<LabelSource> open_by_boxes(const VolumeFormat& format, const std::string& path,
+                                           std::size_t cache_bytes);
+
+/// Reads all labels, by boxes if possible.
+LabelVolume read_whole_volume(const VolumeFormat& format, const std::string& path);
+
+}  // namespace tetwright

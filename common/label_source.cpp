@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tetwright/label_source.h"
+
+#include <algorithm>
+#include <exception>
+#include <mutex>
+#include <utility>
+
+#include "tetwright/error.h"
+#include "tetwright/resources.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Voxels of the boxes that read_all() reads at a time, unless a block has more: enough to make the cost of a
+/// call small, and few enough that many threads share a volume.
+constexpr std::int64_t voxels_at_once = std::int64_t{1} << 21;
+
+std::uint64_t label_count(const VoxelIndex& low, const VoxelIndex& high) {
+  std::uint64_t n = 1;
+  for (std::size_t k = 0; k < 3; ++k) n *= static_cast<std::uint64_t>(high[k] - low[k]);
+  return n;
+}
+
+/// Index of a voxel in an array of all labels.
+std::size_t label_index(const VoxelIndex& size, int x, int y, int z) {
+  return (static_cast<std::size_t>(z) * static_cast<std::size_t>(size[1]) + static_cast<std::size_t>(y)) *
+             static_cast<std::size_t>(size[0]) +
+         static_cast<std::size_t>(x);
+}
+
+/// Size of boxes of whole blocks, joined along the first axis, then the others.
+std::array<std::int64_t, 3> joined_blocks(const VoxelIndex& block, const VoxelIndex& size) {
+  std::array<std::int64_t, 3> box{block[0], block[1], block[2]};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::int64_t voxels = box[0] * box[1] * box[2];
+    const std::int64_t needed = (std::int64_t{size[k]} + box[k] - 1) / box[k];
+    box[k] *= std::clamp<std::int64_t>(voxels_at_once / voxels, 1, needed);
+    if (box[k] < size[k]) break;
+  }
+  return box;
+}
+
+/// The error of the lowest item that failed. Items are taken in order, so that all lower ones have ended.
+class FirstError {
+ public:
+  bool before(std::size_t item) const {
+    const std::lock_guard lock(mutex_);
+    return error_ && item_ < item;
+  }
+  void add(std::size_t item, std::exception_ptr error) {
+    const std::lock_guard lock(mutex_);
+    if (error_ && item_ < item) return;
+    item_ = item;
+    error_ = std::move(error);
+  }
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  mutable std::mutex mutex_;
+  std::size_t item_ = 0;
+  std::exception_ptr error_;
+};
+
+}  // namespace
+
+void LabelSource::read(const VoxelIndex& low, const VoxelIndex& high, std::span<MaterialTag> out) const {
+  for (std::size_t k = 0; k < 3; ++k)
+    TETWRIGHT_CHECK(0 <= low[k] && low[k] < high[k] && high[k] <= grid_.size[k]);
+  TETWRIGHT_CHECK(out.size() == label_count(low, high));
+  read_box(low, high, out);
+}
+
+MemoryLabelSource::MemoryLabelSource(LabelVolume volume)
+    : LabelSource(static_cast<const LabelGrid&>(volume)), labels_(std::move(volume.labels)) {
+  TETWRIGHT_CHECK(labels_.size() == grid().voxels());
+}
+
+void MemoryLabelSource::read_box(const VoxelIndex& low, const VoxelIndex& high,
+                                 std::span<MaterialTag> out) const {
+  auto to = out.begin();
+  for (int z = low[2]; z < high[2]; ++z)
+    for (int y = low[1]; y < high[1]; ++y)
+      to = std::copy_n(labels_.begin() + static_cast<std::ptrdiff_t>(label_index(grid().size, low[0], y, z)),
+                       high[0] - low[0], to);
+}
+
+LabelVolume read_all(const LabelSource& source, const std::string& file) {
+  const LabelGrid& grid = source.grid();
+  if (grid.voxels() > static_cast<std::uint64_t>(max_volume_voxels))
+    throw InputError(file, 0,
+                     "its " + std::to_string(grid.size[0]) + " x " + std::to_string(grid.size[1]) + " x " +
+                         std::to_string(grid.size[2]) + " voxels are more than " +
+                         std::to_string(max_volume_voxels) + "; crop the volume or make it coarser");
+  require_memory(static_cast<double>(grid.voxels()) * sizeof(MaterialTag), "the labels of " + file,
+                 "crop the volume or make it coarser");
+  LabelVolume volume;
+  static_cast<LabelGrid&>(volume) = grid;
+  volume.labels.resize(grid.voxels());
+  const std::array<std::int64_t, 3> box = joined_blocks(source.block(), grid.size);
+  std::array<std::size_t, 3> boxes;
+  for (std::size_t k = 0; k < 3; ++k)
+    boxes[k] = static_cast<std::size_t>((grid.size[k] + box[k] - 1) / box[k]);
+  // Boxes that contain whole slices are contiguous in the result.
+  const bool slices = boxes[0] == 1 && boxes[1] == 1;
+  FirstError first;
+  parallel_chunks(boxes[0] * boxes[1] * boxes[2], [&](std::size_t item, unsigned /*worker*/) {
+    if (first.before(item)) return;
+    const std::array<std::size_t, 3> at{item % boxes[0], item / boxes[0] % boxes[1],
+                                        item / boxes[0] / boxes[1]};
+    VoxelIndex low, high;
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = static_cast<int>(static_cast<std::int64_t>(at[k]) * box[k]);
+      high[k] = static_cast<int>(std::min<std::int64_t>(low[k] + box[k], grid.size[k]));
+    }
+    const std::size_t n = label_count(low, high);
+    try {
+      if (slices) {
+        source.read(low, high, std::span(volume.labels).subspan(label_index(grid.size, 0, 0, low[2]), n));
+        return;
+      }
+      std::vector<MaterialTag> labels(n);
+      source.read(low, high, labels);
+      auto from = labels.begin();
+      for (int z = low[2]; z < high[2]; ++z)
+        for (int y = low[1]; y < high[1]; ++y, from += high[0] - low[0])
+          std::copy_n(
+              from, high[0] - low[0],
+              volume.labels.begin() + static_cast<std::ptrdiff_t>(label_index(grid.size, low[0], y, z)));
+    } catch (...) {
+      first.add(item, std::current_exception());
+    }
+  });
+  first.rethrow();
+  return volume;
+}
+
+}  // namespace tetwright

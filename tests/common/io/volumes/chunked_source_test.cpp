@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/volumes/chunked_source.h"
+
+#include <atomic>
+
+#include "tests/common/io/volume_boxes.h"
+
+namespace tetwright::chunked_source_test {
+namespace {
+
+TEST(ChunkCache, KeepsTheChunksThatWereUsedLast) {
+  ChunkCache cache(1000);
+  int loads = 0;
+  const auto get = [&](std::uint64_t key) {
+    return cache.get(key, [&] {
+      ++loads;
+      return ByteBuffer(400);
+    });
+  };
+  (void)get(1);
+  (void)get(2);
+  (void)get(1);
+  EXPECT_EQ(loads, 2);
+  (void)get(3);  // 2 goes
+  (void)get(1);
+  EXPECT_EQ(loads, 3);
+  (void)get(2);
+  EXPECT_EQ(loads, 4);
+}
+
+TEST(ChunkCache, ChunksLargerThanTheCacheAreNotKept) {
+  ChunkCache cache(100);
+  int loads = 0;
+  for (int i = 0; i < 3; ++i) {
+    const auto chunk = cache.get(1, [&] {
+      ++loads;
+      return ByteBuffer(400);
+    });
+    EXPECT_EQ(chunk->size, 400u);
+  }
+  EXPECT_EQ(loads, 3);
+}
+
+TEST(ChunkCache, NothingIsKeptOfALoadThatFails) {
+  ChunkCache cache(1000);
+  for (int i = 0; i < 2; ++i)
+    EXPECT_EQ(
+        error_of<InputError>([&] { (void)cache.get(1, []() -> ByteBuffer { throw InputError("bad"); }); }),
+        "bad");
+  EXPECT_EQ(cache.get(1, [] { return ByteBuffer(7); })->size, 7u);
+}
+
+TEST(ChunkCache, SeveralThreadsLoadAChunkOnce) {
+  ChunkCache cache(1 << 20);
+  std::atomic<int> loads = 0;
+  std::vector<std::thread> threads;
+  for (int t = 0; t < 4; ++t)
+    threads.emplace_back([&] {
+      for (std::uint64_t key = 0; key < 200; ++key) {
+        const auto chunk = cache.get(key, [&] {
+          ++loads;
+          return ByteBuffer(static_cast<std::size_t>(key));
+        });
+        EXPECT_EQ(chunk->size, key);
+      }
+    });
+  for (std::thread& thread : threads) thread.join();
+  EXPECT_EQ(loads, 200);
+}
+
+TEST(ChunkedSource, ChunkSizesThatOverflowAreRefused) {
+  const auto bytes = [](std::vector<std::int64_t> size, std::size_t each) {
+    return checked_chunk_bytes(size, each, "f");
+  };
+  EXPECT_EQ(bytes({3, 4, 5}, 8), 480);
+  EXPECT_EQ(bytes({2147483647, 1, 1}, 1), 2147483647);
+  for (const auto& size : std::vector<std::vector<std::int64_t>>{
+           {2147483647, 2, 1}, {65536, 32768, 1}, {INT64_MAX, INT64_MAX, INT64_MAX}})
+    EXPECT_NE(error_of<InputError>([&] { (void)bytes(size, 1); }).find("smaller chunks"), std::string::npos);
+  for (const std::int64_t n : {std::int64_t{0}, std::int64_t{-1}, INT64_MIN})
+    EXPECT_NE(error_of<InputError>([&] {
+                (void)bytes({4, n, 4}, 1);
+              }).find("chunks have the size"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace tetwright::chunked_source_test
