@@ -92,10 +92,10 @@ DenseMesh mesh_by_bricks(const LabelInput& labels, VolumeField volume, const Mes
                          MesherReport& report, Stages& stages) {
   if (options.uniform)
     throw UsageError("bricks consist of the cells of an octree; leave out --uniform, or --bricks");
-  if (options.brick_cells < CellTuning::Bricks::min_side ||
+  if (options.brick_cells < min_brick_cells ||
       !std::has_single_bit(unsigned(options.brick_cells)))
     throw UsageError("bricks must have a power of two of cells along a side, at least " +
-                     std::to_string(CellTuning::Bricks::min_side) + ", not " +
+                     std::to_string(min_brick_cells) + ", not " +
                      std::to_string(options.brick_cells));
   stages.begin("bricks");
   const BrickMesher mesher(std::move(volume), options, report, stages.progress());

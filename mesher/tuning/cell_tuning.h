@@ -40,8 +40,6 @@ struct CellTuning {
   struct Bricks {
     /// Voxels around a brick whose points are moved with its own. Moves farther away rarely affect it.
     static constexpr int halo = 8;
-    /// Min cells along a side: with 16, a brick is meshed with seven times its own volume.
-    static constexpr int min_side = 16;
   };
 
   /// Cells of labels for a target number of tets.

@@ -26,6 +26,9 @@ struct RefinementRegion {
   int halvings;
 };
 
+/// Range of MesherOptions::brick_cells.
+inline constexpr int min_brick_cells = 16, max_brick_cells = 4096;
+
 struct MesherOptions {
   int resolution = 128;   ///< finest cells along the longest side, 4 to 4096; ignored if voxel_size is given
   double voxel_size = 0;  ///< edge of a finest cell, input units; 0: determined by the resolution
