@@ -22,6 +22,7 @@ FOLDERS_OF_LIBRARIES = {
     "common/io": ("hdf5.h", "libdeflate.h", "lz4.h", "lzma.h", "nlohmann/", "pugixml.hpp", "zip.h", "zlib.h"),
 }
 FILES_OF_LIBRARIES = {
+    "scotch.h": ("tools/parts/scotch_graph.cpp",),
     "oneapi/": ("common/parallel/tbb_loop.cpp",),
     "tbb/": ("common/parallel/tbb_loop.cpp",),
     "openvdb/": ("mesher/level_sets/openvdb_types.h", "mesher/level_sets/openvdb_grids.cpp",

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "tetwright/partition.h"
+#include "tetwright/tet_mesh.h"
+
+namespace tetwright {
+
+/// Max share by which a part may exceed the mean number of tets, unless the next whole number does.
+inline constexpr double max_part_imbalance = 0.05;
+
+/// Divides the tets of a mesh into parts of about equal size with few faces between them, by Scotch's graph
+/// partitioning (Pellegrini & Roman 1996); large meshes by clusters of tets. The result does not depend on
+/// the number of threads, nor on the user's seed. Parts are connected as far as Scotch makes them so. Takes
+/// some 2 microseconds and 150 bytes for each tet. May be called concurrently.
+/// \throws UsageError if there are fewer tets than parts, or no parts
+TetPartition partition_tets(const TetMesh& mesh, PartNumber parts);
+
+}  // namespace tetwright
