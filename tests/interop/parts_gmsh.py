@@ -15,6 +15,7 @@ import numpy as np
 
 TETWRIGHT = sys.argv[1]
 PARTS = 3
+OLDER_FORMAT = "Warning : Saving a partitioned mesh in a format older than 4.0"
 failures = []
 
 
@@ -41,18 +42,17 @@ def gmsh_pieces(folder, format_name, order):
     stats = write_parts(folder, "m.msh", "--output-format", format_name, "--order", str(order))
     for part, sizes in enumerate(stats["parts"]["each"], 1):
         again = folder / "again.msh"
-        answer = subprocess.run(["gmsh", "-save_all", "-save", "-format", "msh2", "-o", again, folder / f"m_{part}.msh"],
+        answer = subprocess.run(["gmsh", "-save", "-format", "msh2", "-o", again, folder / f"m_{part}.msh"],
                                 check=False, capture_output=True, text=True)
-        text = answer.stdout + answer.stderr
+        text = (answer.stdout + answer.stderr).replace(OLDER_FORMAT, "")
         name = f"{format_name}, order {order}, piece {part}"
         check(f"{name}: Gmsh opens it{'' if answer.returncode == 0 else ': ' + text}", answer.returncode == 0)
         check(f"{name}: no warning", "Warning" not in text and "Error" not in text)
         mesh = meshio.read(again)
         kind = "tetra" if order == 1 else "tetra10"
-        check(f"{name}: its {sizes['tets']} tets", len(mesh.cells_dict.get(kind, ())) in
-              (sizes["tets"], sizes["tets"] + sizes["ghosts"]))
+        check(f"{name}: its {sizes['tets']} tets", len(mesh.cells_dict[kind]) == sizes["tets"])
         physical = np.unique(np.concatenate([g for block, g in zip(mesh.cells, mesh.cell_data["gmsh:physical"]) if block.type == kind]))
-        check(f"{name}: materials {physical}", set(physical) <= {0, 1, 2} and {1, 2} & set(physical))
+        check(f"{name}: materials {physical}", len(physical) > 0 and set(physical) <= {1, 2})
 
 
 def all_pieces_in_gmsh(folder):
@@ -61,11 +61,10 @@ def all_pieces_in_gmsh(folder):
     script = folder / "merge.geo"
     script.write_text("".join(f'Merge "m_{part}.msh";\n' for part in range(1, PARTS + 1)), encoding="utf-8")
     again = folder / "merged.msh"
-    answer = subprocess.run(["gmsh", "-save_all", "-save", "-format", "msh2", "-o", again, script], check=False, capture_output=True,
-                            text=True)
-    check(f"Gmsh merges the pieces{'' if answer.returncode == 0 else ': ' + answer.stdout}", answer.returncode == 0)
+    # Gmsh 4.8.4 ends in a segmentation fault after it has written the mesh, also with pieces of its own.
+    subprocess.run(["gmsh", "-save", "-format", "msh2", "-o", again, script], check=False, capture_output=True)
     tets = meshio.read(again).cells_dict["tetra"]
-    check("no tet is missing", len({tuple(sorted(t)) for t in tets}) == stats["result"]["tets"])
+    check("Gmsh merges the pieces into the whole mesh", len({tuple(sorted(t)) for t in tets}) == len(tets) == stats["result"]["tets"])
 
 
 def vtkhdf(folder):
@@ -81,7 +80,7 @@ def vtkhdf(folder):
 
 def xdmf(folder):
     stats = write_parts(folder, "m.xdmf")
-    parts = np.asarray(meshio.read(folder / "m.xdmf").cell_data["partition"][0])
+    parts = np.ravel(meshio.read(folder / "m.xdmf").cell_data["partition"][0])
     check("XDMF: parts are in succession", (np.diff(parts) >= 0).all())
     check("XDMF: sizes of parts", list(np.bincount(parts)) == [p["tets"] for p in stats["parts"]["each"]])
 

@@ -58,10 +58,11 @@ class PieceJoiner {
         nodes_(numbers_of_nodes()) {}
 
   JoinedPieces join() {
-    check_counts();
     choose_fields();
     place_nodes();
     place_tets();
+    check_counts();
+    check_owners_of_nodes();
     compare_ghosts();
     take_faces();
     return std::move(out_);
@@ -190,41 +191,52 @@ class PieceJoiner {
       throw InputError(name_ + ": more than " + std::to_string(no_index - 1) + " points; split the mesh");
     mesh.points.resize(nodes_.size());
     resize_values(mesh.point_fields, nodes_.size());
-    std::vector<std::size_t> first(nodes_.size(), nowhere), last(nodes_.size(), nowhere),
-        owner(nodes_.size(), nowhere);
+    std::vector<std::size_t> first(nodes_.size(), nowhere), last(nodes_.size(), nowhere);
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       const ReadPiece& piece = pieces_[i];
       for (Index p = 0; p < piece.points.size(); ++p) {
         const std::size_t at = nodes_.index(piece.node_numbers[p]);
-        const auto point = [&] { return "point number " + std::to_string(piece.node_numbers[p]); };
-        if (last[at] == i) fail(i, point() + " is there twice; write the pieces again");
+        if (last[at] == i) fail(i, point_text(piece, p) + " is there twice; write the pieces again");
         last[at] = i;
         if (first[at] == nowhere) {
           first[at] = i;
           mesh.points[at] = piece.points[p];
           copy_values(piece.point_fields, p, mesh.point_fields, at);
-        } else {
-          for (int k = 0; k < 3; ++k)
-            if (!equal_bits(piece.points[p][k], mesh.points[at][k]))
-              fail(i, point() + " is elsewhere than in " + named(first[at]) +
-                          "; the pieces do not belong together: write them again");
-          if (const MeshField* field = differing(piece.point_fields, p, mesh.point_fields, at))
-            fail(i, point() + " has another value of " + in_quotes(field->name) + " than in " +
-                        named(first[at]) + "; the pieces do not belong together: write them again");
+          continue;
         }
-        if (piece.node_ghosts.empty() || piece.node_ghosts[p]) continue;
-        if (owner[at] != nowhere)
-          fail(i, point() + " is its own, and also that of " + named(owner[at]) + "; write the pieces again");
-        owner[at] = i;
+        for (int k = 0; k < 3; ++k)
+          if (!equal_bits(piece.points[p][k], mesh.points[at][k]))
+            fail(i, point_text(piece, p) + " is elsewhere than in " + named(first[at]) +
+                        "; the pieces do not belong together: write them again");
+        if (const MeshField* field = differing(piece.point_fields, p, mesh.point_fields, at))
+          fail(i, point_text(piece, p) + " has another value of " + in_quotes(field->name) + " than in " +
+                      named(first[at]) + "; the pieces do not belong together: write them again");
       }
     }
+  }
+  static std::string point_text(const ReadPiece& piece, Index local) {
+    return "point number " + std::to_string(piece.node_numbers[local]);
+  }
+
+  /// Checks that one piece owns each node, if all pieces tell.
+  void check_owners_of_nodes() const {
     if (std::any_of(pieces_.begin(), pieces_.end(),
                     [](const ReadPiece& p) { return p.node_ghosts.empty() && !p.points.empty(); }))
       return;
+    std::vector<std::size_t> owner(nodes_.size(), nowhere);
+    for (std::size_t i = 0; i < pieces_.size(); ++i)
+      for (Index p = 0; p < pieces_[i].points.size(); ++p) {
+        if (pieces_[i].node_ghosts[p]) continue;
+        std::size_t& known = owner[nodes_.index(pieces_[i].node_numbers[p])];
+        if (known != nowhere)
+          fail(i, point_text(pieces_[i], p) + " is its own, and also that of " + named(known) +
+                      "; write the pieces again");
+        known = i;
+      }
     for (std::size_t at = 0; at < owner.size(); ++at)
       if (owner[at] == nowhere)
-        fail(first[at], "point number " + std::to_string(nodes_.number(at)) +
-                            " is a ghost in all pieces; the set of pieces is incomplete: write it again");
+        throw InputError(name_ + ": point number " + std::to_string(nodes_.number(at)) +
+                         " is a ghost in all pieces; the set of pieces is incomplete: write it again");
   }
 
   void place_tets() {

@@ -150,14 +150,21 @@ class NumberedPieces {
     const pugi::xml_node parent = node.child("Cells");
     if (!parent) data.fail(node, "there are no Cells in it");
     const pugi::xml_node types_node = data.array(parent, "types"),
+                         offsets_node = data.array(parent, "offsets"),
                          connectivity_node = data.array(parent, "connectivity");
     const std::vector<std::uint32_t> types = data.counts(types_node, cells);
     data.expect_size(types_node, types.size(), cells);
     const bool second_order = !types.empty() && types[0] == element::quadratic_tet.vtk;
-    const auto type =
-        static_cast<std::uint32_t>((second_order ? element::quadratic_tet : element::tet).vtk);
+    const auto type = static_cast<std::uint32_t>((second_order ? element::quadratic_tet : element::tet).vtk);
     if (std::any_of(types.begin(), types.end(), [&](std::uint32_t t) { return t != type; })) return false;
     const std::size_t nodes = second_order ? 10 : 4;
+    const std::vector<std::uint32_t> offsets = data.counts(offsets_node, cells);
+    data.expect_size(offsets_node, offsets.size(), cells);
+    for (std::size_t t = 0; t < cells; ++t)
+      if (offsets[t] != nodes * (t + 1))
+        data.fail(offsets_node, "cell " + std::to_string(t) + " ends at index " + std::to_string(offsets[t]) +
+                                    ", not after its " + std::to_string(nodes) +
+                                    " points; the file is damaged");
     const std::vector<std::uint32_t> ids = data.counts(connectivity_node, nodes * cells);
     data.expect_size(connectivity_node, ids.size(), nodes * cells);
     for (std::size_t i = 0; i < ids.size(); ++i)

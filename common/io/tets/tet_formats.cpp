@@ -136,6 +136,7 @@ const std::vector<TetFormat>& tet_formats() {
                       .own_cell_fields = own_vtk_cells},
        .parts = vtk_piece_parts,
        .own_cell_fields = own_vtk_cells,
+       .field_name = vtkhdf_name,
        .second_order = true},
       {.extension = ".msh",
        .name = "msh22",

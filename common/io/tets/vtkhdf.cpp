@@ -20,14 +20,6 @@ namespace tetwright {
 
 namespace {
 
-/// Name of a field's dataset: slashes would make groups.
-std::string vtkhdf_name(const std::string& name) {
-  std::string out = name;
-  for (char& c : out)
-    if (c == '/') c = '_';
-  return out == "." ? "_" : out;
-}
-
 std::vector<std::uint8_t> bytes_of_names(const std::vector<std::pair<std::int64_t, std::string>>& names) {
   std::vector<std::uint8_t> bytes;
   for (const auto& [number, name] : names)
@@ -60,6 +52,13 @@ void add_vtkhdf_fields(Hdf5Writer& file, const std::string& group, const std::ve
 }
 
 }  // namespace
+
+std::string vtkhdf_name(const std::string& name) {
+  std::string out = name;
+  for (char& c : out)
+    if (c == '/') c = '_';
+  return out == "." ? "_" : out;
+}
 
 /// Arrays of all pieces, one after the other.
 struct VtkHdfWriter::Arrays {

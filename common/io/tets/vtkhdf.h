@@ -31,6 +31,9 @@ class VtkHdfWriter {
   std::unique_ptr<Arrays> arrays_;
 };
 
+/// Converts a name to one for a dataset, in which slashes would make groups.
+std::string vtkhdf_name(const std::string& name);
+
 /// Writes the file of all pieces.
 void write_vtkhdf(const MeshPieces& pieces, const std::string& path, OutputFiles& files);
 

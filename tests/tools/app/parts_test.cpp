@@ -12,7 +12,7 @@ namespace {
 
 class PartsApp : public ::testing::Test {
  protected:
-  PartsApp() { EXPECT_EQ(run("sample random_interior_small -o " + (f / "in.vtu")).status, 0); }
+  PartsApp() { EXPECT_EQ(run("sample random-interior-small -o " + (f / "in.vtu")).status, 0); }
   /// `more` begins with the output file in the folder.
   Answer improved(const std::string& more) const {
     return run("improve " + (f / "in.vtu") + " --max-iterations 1 --seed 3 -o " + (f / more));
@@ -79,7 +79,7 @@ TEST_F(PartsApp, WrongCallsAreRefused) {
   expect_refused(call + (f / "m.pvtu") + " --parts 0", 2, {"--parts"});
   expect_refused(call + "- --output-format msh41 --parts 1", 2, {"standard output"});
   expect_refused(call + "- --output-format pvtu", 2, {"standard output"});
-  expect_refused(call + (f / "m.pvtu") + " --parts 2 --boundary " + (f / "m_1.vtu"), 2, {"--boundary"});
+  expect_refused(call + (f / "m.pvtu") + " --parts 2 --log-file " + (f / "m_1.vtu"), 2, {"--log-file", "-o"});
   EXPECT_EQ(run("sample tet_cube -o " + (f / "small.vtu")).status, 0);
   expect_refused("improve " + (f / "small.vtu") + " --parts 10000 -o " + (f / "m.pvtu"), 2,
                  {"--parts 10000", "tets"});

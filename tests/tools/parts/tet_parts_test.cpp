@@ -44,7 +44,7 @@ TEST(TetParts, PartsAreEvenConnectedAndCutFewFaces) {
 }
 
 TEST(TetParts, TheResultDoesNotDependOnThreads) {
-  const TetMesh mesh = std::get<TetMesh>(make_sample("random_interior"));
+  const TetMesh mesh = std::get<TetMesh>(make_sample("random-interior"));
   TetPartition one, two;
   with_threads(1, [&] { one = partition_tets(mesh, 7); });
   with_threads(2, [&] { two = partition_tets(mesh, 7); });
@@ -87,7 +87,7 @@ TEST(TetParts, BodiesThatTouchNothingAreDividedToo) {
 }
 
 TEST(TetClusters, AreConnectedAndHaveAtMostTheirSize) {
-  const TetMesh mesh = std::get<TetMesh>(make_sample("random_interior"));
+  const TetMesh mesh = std::get<TetMesh>(make_sample("random-interior"));
   const TetNeighbours neighbours = tet_neighbours(mesh);
   const TetClusters clusters = cluster_tets(mesh, neighbours, 64);
   EXPECT_LT(clusters.count, mesh.tets.size() / 20);

@@ -109,7 +109,7 @@ TEST(PartsInMsh, EachFileHasItsTetsItsGhostsAndTheirOwners) {
   EXPECT_EQ(triangles, mesh.interfaces.size());
 }
 
-TEST(PartsInMsh, SurfacesWithoutParentsNumbersAreFree) {
+TEST(PartsInMsh, FilesAreNumberedFromOne) {
   EXPECT_EQ(files_of_msh_pieces("a/m.msh", 2), (std::vector<std::string>{"a/m_1.msh", "a/m_2.msh"}));
 }
 
@@ -135,7 +135,7 @@ TEST(PartsInVtkHdf, PiecesAreInSuccession) {
                             points = numbers("PointData/GlobalNodeId"), values = numbers("PointData/a_b");
   EXPECT_EQ(static_cast<std::size_t>(std::count(ghosts.begin(), ghosts.end(), 0)), mesh.tets.size());
   for (std::size_t c = 0; c < all; ++c) {
-    const PartNumber part = c < cells[0] ? 0 : 1;
+    const PartNumber part = static_cast<double>(c) < cells[0] ? 0 : 1;
     EXPECT_EQ(ghosts[c] == 0, partition.of(static_cast<std::size_t>(tets[c])) == part);
   }
   for (std::size_t p = 0; p < points.size(); ++p) EXPECT_EQ(values[p], points[p] / 7);

@@ -8,11 +8,13 @@
 #include <variant>
 
 #include "common/io/tets/vtu.h"
+#include "common/random.h"
 #include "common/samples/samples.h"
 #include "tests/common/small_meshes.h"
 #include "tests/common/temporary_folder.h"
 #include "tetwright/error.h"
 #include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::pvtu_test {
 namespace {
@@ -177,12 +179,12 @@ TEST_F(Pvtu, NumbersThatAreTwiceOrMissingAreNamed) {
     put(f / "m_0.vtu", kept);
   };
   TetPartition partition = in_turn(mesh, 2), more = partition, fewer = partition;
-  more.part_of[20] = 0;
+  more.part_of[10] = 0;
   fewer.part_of[3] = 1;
-  ASSERT_NE(partition.part_of[20], 0u);
+  ASSERT_NE(partition.part_of[10], 0u);
   ASSERT_NE(partition.part_of[3], 1u);
   write_two(more, partition);
-  expect_error({"piece 1", "tet number 20 ", "piece 0"});
+  expect_error({"piece 1", "tet number 10 ", "piece 0"});
   write_two(fewer, partition);
   expect_error({"no piece has the tet number 3 "});
 }
@@ -204,6 +206,28 @@ TEST_F(Pvtu, GhostsThatDifferFromTheirOwnersAreNamed) {
   other.tets[0] = {1, 2, 0, 3};
   write_two(other);
   expect_error({"piece 1", "ghost tet number 0 ", "other points"});
+}
+
+TEST_F(Pvtu, AnyDamageIsRefusedOrHarmless) {
+  const TetMesh mesh = rich_mesh();
+  write(mesh, 2);
+  Random random(5);
+  for (const std::string file : {"m.pvtu", "m_0.vtu", "m_1.vtu"}) {
+    const std::string good = contents(f / file);
+    const auto size = static_cast<std::uint32_t>(good.size());
+    for (int i = 0; i < 60; ++i) {
+      std::string bad = good;
+      for (int k = 0; k < 3; ++k) bad[random.below(size)] = static_cast<char>(' ' + random.below(90));
+      if (i % 5 == 0) bad.resize(random.below(size));
+      put(f / file, bad);
+      try {
+        EXPECT_FALSE(read_tet_mesh(f / "m.pvtu").mesh.tets.empty());
+      } catch (const Error& e) {
+        EXPECT_NE(std::string(e.what()).find("m"), std::string::npos);
+      }
+    }
+    put(f / file, good);
+  }
 }
 
 TEST_F(Pvtu, PiecesOfOtherProgramsAreJoinedByCoordinates) {
