@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "common/mesh/disjoint_sets.h"
+
 namespace tetwright {
 
 namespace {
@@ -120,7 +122,69 @@ class PartBalancer {
   std::vector<std::size_t> sizes_;
 };
 
+/// Pieces of parts, by the smallest tet of each.
+struct PartPieces {
+  PartPieces(const TetNeighbours& neighbours, const TetPartition& partition)
+      : sets(neighbours.size()), sizes(neighbours.size(), 0), largest(partition.parts, no_index) {
+    for (Index t = 0; t < neighbours.size(); ++t)
+      for (const Index other : neighbours[t])
+        if (other != no_index && partition.of(t) == partition.of(other)) sets.unite(t, other);
+    for (Index t = 0; t < neighbours.size(); ++t) ++sizes[sets.root(t)];
+    for (Index t = 0; t < neighbours.size(); ++t) {
+      Index& known = largest[partition.of(t)];
+      if (sets.is_root(t) && (known == no_index || sizes[t] > sizes[known])) known = t;
+    }
+  }
+  DisjointSets sets;
+  std::vector<std::size_t> sizes;  ///< at the first tet of each piece
+  std::vector<Index> largest;      ///< piece of each part
+};
+
+/// Moves the smaller pieces of all parts once.
+/// \return the number of pieces moved
+std::size_t move_small_pieces(const TetNeighbours& neighbours, std::size_t most, TetPartition& partition) {
+  PartPieces pieces(neighbours, partition);
+  std::vector<std::size_t> part_sizes(partition.parts, 0);
+  for (const PartNumber part : partition.part_of) ++part_sizes[part];
+  std::vector<std::pair<Index, Index>> small;  // piece, tet
+  for (Index t = 0; t < neighbours.size(); ++t)
+    if (const Index piece = pieces.sets.root(t); piece != pieces.largest[partition.of(t)])
+      small.emplace_back(piece, t);
+  std::sort(small.begin(), small.end());
+  std::size_t moved = 0;
+  std::vector<PartNumber> across;
+  for (std::size_t begin = 0, end = 0; begin < small.size(); begin = end) {
+    const PartNumber own = partition.of(small[begin].second);
+    across.clear();
+    for (; end < small.size() && small[end].first == small[begin].first; ++end)
+      for (const Index other : neighbours[small[end].second])
+        if (other != no_index && partition.of(other) != own) across.push_back(partition.of(other));
+    std::sort(across.begin(), across.end());
+    PartNumber best = own;
+    std::size_t faces = 0;
+    for (std::size_t i = 0, j = 0; i < across.size(); i = j) {
+      while (j < across.size() && across[j] == across[i]) ++j;
+      if (j - i <= faces || part_sizes[across[i]] + (end - begin) > most) continue;
+      faces = j - i;
+      best = across[i];
+    }
+    if (best == own) continue;
+    for (std::size_t i = begin; i < end; ++i) partition.part_of[small[i].second] = best;
+    part_sizes[own] -= end - begin;
+    part_sizes[best] += end - begin;
+    ++moved;
+  }
+  return moved;
+}
+
 }  // namespace
+
+void connect_parts(const TetNeighbours& neighbours, std::size_t most, TetPartition& partition) {
+  // A piece may be moved to a piece that is moved itself.
+  constexpr int max_rounds = 4;
+  for (int round = 0; round < max_rounds; ++round)
+    if (move_small_pieces(neighbours, most, partition) == 0) return;
+}
 
 void balance_parts(const TetNeighbours& neighbours, std::size_t most, TetPartition& partition) {
   PartBalancer(neighbours, most, partition).balance();

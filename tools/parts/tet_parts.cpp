@@ -50,7 +50,9 @@ TetPartition partition_tets(const TetMesh& mesh, PartNumber parts) {
     for (const Index cluster : clusters.of_tet) partition.part_of.push_back(of_cluster[cluster]);
   }
   const auto most = static_cast<std::size_t>((1 + max_part_imbalance) * static_cast<double>(tets) / parts);
-  balance_parts(neighbours, std::max(most, (tets + parts - 1) / parts), partition);
+  const std::size_t largest = std::max(most, (tets + parts - 1) / parts);
+  balance_parts(neighbours, largest, partition);
+  connect_parts(neighbours, largest, partition);
   return partition;
 }
 

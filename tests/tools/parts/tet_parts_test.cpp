@@ -109,6 +109,23 @@ TEST(TetClusters, AreConnectedAndHaveAtMostTheirSize) {
   EXPECT_LT(*std::max_element(sizes.begin(), sizes.end()), mesh.tets.size() / 4);
 }
 
+TEST(PartBalance, SmallPiecesGoToTheirNeighboursIfThereIsRoom) {
+  const TetMesh mesh = block(6);
+  const TetNeighbours neighbours = tet_neighbours(mesh);
+  TetPartition partition{.parts = 2, .part_of = {}};
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    partition.part_of.push_back(t < mesh.tets.size() / 2 ? 0 : 1);
+  const TetPartition halves = partition;
+  ASSERT_EQ(partition_statistics(mesh, halves).parts[0].pieces, 1u);
+  partition.part_of[10] = 1;
+  partition.part_of.back() = 0;
+  TetPartition full = partition;
+  connect_parts(neighbours, mesh.tets.size(), partition);
+  EXPECT_EQ(partition.part_of, halves.part_of);
+  connect_parts(neighbours, 0, full);
+  EXPECT_EQ(full.part_of[10], 1u);
+}
+
 TEST(PartBalance, MovesAlongNeighboursAndFillsEmptyParts) {
   const TetMesh mesh = block(6);
   const TetNeighbours neighbours = tet_neighbours(mesh);

@@ -11,7 +11,8 @@ inline constexpr double max_part_imbalance = 0.05;
 
 /// Divides the tets of a mesh into parts of about equal size with few faces between them, by Scotch's graph
 /// partitioning (Pellegrini & Roman 1996); large meshes by clusters of tets. The result does not depend on
-/// the number of threads, nor on the user's seed. Parts are connected as far as Scotch makes them so. Takes
+/// the number of threads, nor on the user's seed. Pieces of a part that Scotch leaves unconnected
+/// go to neighbouring parts where these stay small enough. Takes
 /// some 2 microseconds and 150 bytes for each tet. May be called concurrently.
 /// \throws UsageError if there are fewer tets than parts, or no parts
 TetPartition partition_tets(const TetMesh& mesh, PartNumber parts);
