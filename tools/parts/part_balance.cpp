@@ -179,6 +179,40 @@ std::size_t move_small_pieces(const TetNeighbours& neighbours, std::size_t most,
 
 }  // namespace
 
+void smooth_parts(const TetNeighbours& neighbours, std::size_t most, TetPartition& partition) {
+  constexpr int max_rounds = 20;
+  std::vector<std::size_t> sizes(partition.parts, 0);
+  for (const PartNumber part : partition.part_of) ++sizes[part];
+  bool moved = true;
+  for (int round = 0; moved && round < max_rounds; ++round) {
+    moved = false;
+    for (Index t = 0; t < neighbours.size(); ++t) {
+      const PartNumber own = partition.part_of[t];
+      const auto faces_to = [&](PartNumber part) {
+        return std::count_if(neighbours[t].begin(), neighbours[t].end(), [&](Index other) {
+          return other != no_index && partition.part_of[other] == part;
+        });
+      };
+      PartNumber best = own;
+      auto faces = faces_to(own);
+      for (const Index other : neighbours[t]) {
+        if (other == no_index) continue;
+        const PartNumber part = partition.part_of[other];
+        if (part == own || part == best || sizes[part] >= most || sizes[own] == 1) continue;
+        if (const auto shared = faces_to(part); shared > faces) {
+          faces = shared;
+          best = part;
+        }
+      }
+      if (best == own) continue;
+      --sizes[own];
+      ++sizes[best];
+      partition.part_of[t] = best;
+      moved = true;
+    }
+  }
+}
+
 void connect_parts(const TetNeighbours& neighbours, std::size_t most, TetPartition& partition) {
   // A piece may be moved to a piece that is moved itself.
   constexpr int max_rounds = 4;

@@ -14,6 +14,10 @@ namespace tetwright {
 /// \pre parts * most is at least the number of tets, which is at least the number of parts
 void balance_parts(const TetNeighbours& neighbours, std::size_t most, TetPartition& partition);
 
+/// Gives tets to the neighbouring part with which they share more faces than with their own, if that then has
+/// at most `most` tets: the ragged borders of clusters become smooth.
+void smooth_parts(const TetNeighbours& neighbours, std::size_t most, TetPartition& partition);
+
 /// Gives pieces of a part that are not connected by faces with its largest piece to the neighbouring part
 /// with which they share most faces, if that then has at most `most` tets.
 void connect_parts(const TetNeighbours& neighbours, std::size_t most, TetPartition& partition);

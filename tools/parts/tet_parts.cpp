@@ -13,9 +13,11 @@ namespace tetwright {
 
 namespace {
 
-/// Larger meshes are divided by clusters, whose graph takes Scotch a fraction of the time and memory.
-constexpr std::size_t max_tets_of_graph = std::size_t{1} << 21;
-constexpr std::size_t tets_of_cluster = 64;
+/// Larger meshes are divided by clusters, whose graph takes Scotch a fraction of the memory: some 40 instead
+/// of 200 bytes for each tet. Borders of clusters of 64 tets have half again as many faces once smoothed, so
+/// clusters are as small as the number of vertices allows.
+constexpr std::size_t max_tets_of_graph = std::size_t{1} << 23;
+constexpr std::size_t min_tets_of_cluster = 16, max_clusters = std::size_t{1} << 20;
 /// Parts need this many clusters to have about the same size.
 constexpr std::size_t min_clusters_of_part = 200;
 /// Imbalance asked of Scotch, which does not always keep it.
@@ -24,9 +26,8 @@ constexpr double scotch_imbalance = 0.02;
 /// Size of the clusters; 1: none.
 std::size_t cluster_size(std::size_t tets, PartNumber parts) {
   if (tets <= max_tets_of_graph) return 1;
-  // Scotch numbers arcs with 31 bits, and a cluster has some 30.
-  const std::size_t needed = std::max(tets_of_cluster, tets >> 25);
-  return std::clamp<std::size_t>(tets / (min_clusters_of_part * parts), 1, needed);
+  const std::size_t wanted = std::max(min_tets_of_cluster, tets / max_clusters);
+  return std::clamp<std::size_t>(tets / (min_clusters_of_part * parts), 1, wanted);
 }
 
 }  // namespace
@@ -52,6 +53,7 @@ TetPartition partition_tets(const TetMesh& mesh, PartNumber parts) {
   const auto most = static_cast<std::size_t>((1 + max_part_imbalance) * static_cast<double>(tets) / parts);
   const std::size_t largest = std::max(most, (tets + parts - 1) / parts);
   balance_parts(neighbours, largest, partition);
+  if (size > 1) smooth_parts(neighbours, largest, partition);
   connect_parts(neighbours, largest, partition);
   return partition;
 }
