@@ -13,8 +13,8 @@ inline constexpr double max_part_imbalance = 0.05;
 /// partitioning (Pellegrini & Roman 1996); large meshes by clusters of tets. The result does not depend on
 /// the number of threads, nor on the user's seed. Pieces of a part that Scotch leaves unconnected
 /// go to neighbouring parts where these stay small enough. Takes
-/// some 2 microseconds and 150 bytes for each tet. May be called concurrently.
-/// \throws UsageError if there are fewer tets than parts, or no parts
+/// 1 to 2 microseconds for each tet with 8 to 64 parts, and the memory of mesh_faces(). May be called
+/// concurrently. \throws UsageError if there are fewer tets than parts, or no parts
 TetPartition partition_tets(const TetMesh& mesh, PartNumber parts);
 
 }  // namespace tetwright
