@@ -4,8 +4,12 @@ tets, of tets, their volume, and the area of the triangles with a tag.
 
 usage: mpirun -n N dolfinx_ranks.py MESH.xdmf TAG
 """
+import logging
+import os
 import pathlib
 import sys
+
+os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import dolfinx
 import numpy as np
@@ -13,6 +17,7 @@ import ufl
 from dolfinx import fem, io
 from mpi4py import MPI
 
+logging.disable(logging.INFO)  # otherwise every compiled form is logged
 path, tag = pathlib.Path(sys.argv[1]), int(sys.argv[2])
 world = MPI.COMM_WORLD
 with io.XDMFFile(world, str(path), "r") as file:

@@ -249,9 +249,11 @@ def parts_on_two_ranks(folder):
         sys.exit(f"tetwright: {answer.stderr}")
     tets = Body(out).tets
     tag = names_of(out.with_name("parts_facets.xdmf"))["tip"]
+    # MPI, which this process has started, would take these for its own ranks.
+    environment = {name: value for name, value in os.environ.items() if not name.startswith(("OMPI_", "PMIX_", "OPAL_"))}
     ranks = subprocess.run(["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(parts), sys.executable,
                             pathlib.Path(__file__).with_name("dolfinx_ranks.py"), out, str(tag)],
-                           check=False, capture_output=True, text=True)
+                           check=False, capture_output=True, text=True, env=environment)
     if ranks.returncode != 0:
         sys.exit(f"mpirun: {ranks.stderr}")
     _, busy, found, volume, area = ranks.stdout.split()
