@@ -72,8 +72,8 @@ std::vector<std::uint8_t> marks_of(const std::vector<std::int64_t>& numbers) {
 /// Reads pieces that number their tets and points.
 class NumberedPieces {
  public:
-  NumberedPieces(std::vector<std::string> files, const std::string& path)
-      : files_(std::move(files)), path_(path) {}
+  NumberedPieces(std::vector<std::string> files, const std::string& path, const FileReader& read_file)
+      : files_(std::move(files)), path_(path), read_file_(read_file) {}
 
   /// \return false if a piece has no numbers, or other cells than tets: then read_vtu_files() can read them
   bool read() {
@@ -110,7 +110,7 @@ class NumberedPieces {
     const std::string& file = files_[number];
     std::string bytes;
     try {
-      bytes = read_whole_file(file);
+      bytes = read_file_(file);
     } catch (const InputError& e) {
       throw InputError(path_ + ": piece " + std::to_string(number) + ": " + e.what());
     }
@@ -220,6 +220,7 @@ class NumberedPieces {
 
   std::vector<std::string> files_;
   const std::string& path_;
+  const FileReader& read_file_;
   std::vector<ReadPiece> pieces_;
   bool described_ = false;  ///< the next three are those of a piece
   std::string material_names_, face_group_names_;
@@ -230,11 +231,12 @@ class NumberedPieces {
 
 }  // namespace
 
-ReadTetMesh read_pvtu(const std::string& path, const ReadTetMeshOptions& options) {
-  std::vector<std::string> files = piece_files(read_whole_file(path), path);
-  NumberedPieces numbered(files, path);
+ReadTetMesh read_pvtu(const std::string& path, const ReadTetMeshOptions& options,
+                      const FileReader& read_file) {
+  const std::vector<std::string> files = piece_files(read_file(path), path);
+  NumberedPieces numbered(files, path, read_file);
   if (numbered.read()) return numbered.join(options);
-  return read_vtu_files(files, path, options);
+  return read_vtu_files(files, path, options, read_file);
 }
 
 std::vector<std::string> pieces_of_pvtu(const std::string& path) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/io/volumes/data_file.h"
 #include "common/mesh/mesh_pieces.h"
 #include "tetwright/files.h"
 #include "tetwright/io.h"
@@ -17,7 +18,9 @@ namespace tetwright {
 /// \throws InputError, with the piece and the number, if a tet is in two pieces or in none, a number is twice
 ///   in a piece, a ghost differs from its owner's tet, or pieces give a point different coordinates or
 ///   values; and in the cases of read_vtu()
-ReadTetMesh read_pvtu(const std::string& path, const ReadTetMeshOptions& options = {});
+/// \param read_file reads all of these files
+ReadTetMesh read_pvtu(const std::string& path, const ReadTetMeshOptions& options,
+                      const FileReader& read_file);
 
 /// Files of the pieces that a .pvtu file names; none if it cannot be read.
 std::vector<std::string> pieces_of_pvtu(const std::string& path);

@@ -37,6 +37,10 @@ ReadTetMesh read_xdmf_files(const std::string& path, const ReadTetMeshOptions& o
   return read_xdmf(read_whole_file(path), path, read_whole_file, options, facets);
 }
 
+ReadTetMesh read_pvtu_files(const std::string& path, const ReadTetMeshOptions& options) {
+  return read_pvtu(path, options, read_whole_file);
+}
+
 /// Reads the .node, .ele and, if it exists, .face file with the same name.
 /// \param path path of the .node or .ele file
 ReadTetMesh read_tetgen_files(const std::string& path, const ReadTetMeshOptions& options) {
@@ -120,7 +124,7 @@ const std::vector<TetFormat>& tet_formats() {
        .second_order = true},
       {.extension = ".pvtu",
        .name = "pvtu",
-       .read_files = read_pvtu,
+       .read_files = read_pvtu_files,
        .part_files = {.names = files_of_pvtu,
                       .write = write_pvtu,
                       .own_point_fields = own_vtk_points,

@@ -19,7 +19,6 @@
 #include "common/io/text/text_scanner.h"
 #include "common/parallel/touched_memory.h"
 #include "tetwright/error.h"
-#include "tetwright/files.h"
 #include "tetwright/resources.h"
 
 namespace tetwright {
@@ -385,11 +384,11 @@ ReadTetMesh read_vtu(std::string_view bytes, const std::string& name, const Read
 }
 
 ReadTetMesh read_vtu_files(const std::vector<std::string>& files, const std::string& name,
-                           const ReadTetMeshOptions& options) {
+                           const ReadTetMeshOptions& options, const FileReader& read_file) {
   VtuReader reader(name, options);
   std::string bytes;
   for (const std::string& file : files) {
-    bytes = read_whole_file(file);
+    bytes = read_file(file);
     reader.add_file(bytes, file);
   }
   return reader.finish();

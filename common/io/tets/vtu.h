@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/io/names/mesh_parts.h"
+#include "common/io/volumes/data_file.h"
 #include "tetwright/io.h"
 
 namespace tetwright {
@@ -24,7 +25,7 @@ ReadTetMesh read_vtu(std::string_view bytes, const std::string& name, const Read
 /// Reads the pieces of several files as if they were in one.
 /// \param name file name for messages about all of them
 ReadTetMesh read_vtu_files(const std::vector<std::string>& files, const std::string& name,
-                           const ReadTetMeshOptions& options);
+                           const ReadTetMeshOptions& options, const FileReader& read_file);
 
 /// Content of a file, compressed by zlib: points as Float64; materials as the integer cell field "material";
 /// their names as the FieldData array "material_names" of UTF-8 lines "tag<TAB>name", in which underscores
