@@ -2,14 +2,10 @@
 // The only file that includes Scotch.
 #include "tools/parts/scotch_graph.h"
 
-#include <pthread.h>
-#include <sched.h>
-
 #include <cstdint>
 #include <cstdio>
 #include <mutex>
 #include <new>
-#include <type_traits>
 
 // Expects cstdint and cstdio.
 #include <scotch.h>
@@ -43,27 +39,11 @@ using ScotchGraph = Owned<SCOTCH_Graph, SCOTCH_graphInit, SCOTCH_graphExit>;
 using ScotchStrategy = Owned<SCOTCH_Strat, SCOTCH_stratInit, SCOTCH_stratExit>;
 using ScotchContext = Owned<SCOTCH_Context, SCOTCH_contextInit, SCOTCH_contextExit>;
 
-/// Restores the processors of the calling thread, which Scotch binds to one of them.
-class KeptAffinity {
- public:
-  KeptAffinity() : known_(pthread_getaffinity_np(pthread_self(), sizeof before_, &before_) == 0) {}
-  ~KeptAffinity() {
-    if (known_) pthread_setaffinity_np(pthread_self(), sizeof before_, &before_);
-  }
-  KeptAffinity(const KeptAffinity&) = delete;
-  KeptAffinity& operator=(const KeptAffinity&) = delete;
-
- private:
-  cpu_set_t before_;
-  bool known_;
-};
-
 }  // namespace
 
 std::vector<PartNumber> scotch_parts(const WeightedGraph& graph, PartNumber parts, double imbalance) {
   static std::mutex one_at_a_time;  // its parser of strategies has global variables
   const std::lock_guard lock(one_at_a_time);
-  const KeptAffinity affinity;
   const auto vertices = static_cast<SCOTCH_Num>(graph.starts.size() - 1);
   const auto list = [](const std::vector<std::int32_t>& items) {
     return items.empty() ? nullptr : items.data();

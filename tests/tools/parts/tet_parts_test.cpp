@@ -86,6 +86,11 @@ TEST(TetParts, BodiesThatTouchNothingAreDividedToo) {
   EXPECT_LE(partition_statistics(mesh, partition_tets(mesh, 3)).imbalance, max_part_imbalance);
 }
 
+TEST(TetParts, TetsWithoutNeighboursAreDivided) {
+  const TetPartition partition = partition_tets(point_bridge(), 2);
+  EXPECT_EQ(partition.part_of[0] + partition.part_of[1], 1u);
+}
+
 TEST(TetClusters, AreConnectedAndHaveAtMostTheirSize) {
   const TetMesh mesh = std::get<TetMesh>(make_sample("random-interior"));
   const TetNeighbours neighbours = tet_neighbours(mesh);
