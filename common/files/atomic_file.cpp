@@ -82,7 +82,7 @@ struct TemporaryName {
   std::atomic<bool> valid{false};
   std::array<char, 4001> path;
 };
-std::array<TemporaryName, 256> temporary_names;
+std::array<TemporaryName, 1024> temporary_names;
 
 // Protocol between threads that create or rename files and abandon_output_files(). All accesses are
 // sequentially consistent: either a thread sees `abandoned` and stops, or abandon_output_files() sees it in

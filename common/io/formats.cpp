@@ -20,6 +20,7 @@
 #include "common/io/surfaces/vtp.h"
 #include "common/io/tets/medit.h"
 #include "common/io/tets/msh.h"
+#include "common/io/tets/pvtu.h"
 #include "common/io/tets/tet_formats.h"
 #include "common/io/tets/vtk.h"
 #include "common/io/tets/vtu.h"
@@ -71,7 +72,7 @@ bool is_for(const Format& format, FileUse use) {
   return use == FileUse::read || format.write != nullptr;
 }
 bool is_for(const TetFormat& format, FileUse use) {
-  return use == FileUse::read ? format.read || format.read_files : !format.write.empty();
+  return use == FileUse::read ? format.read || format.read_files : !format.write.empty() || format.part_files;
 }
 
 bool is_one_file(const SurfaceFormat&) { return true; }
@@ -115,8 +116,8 @@ const typename Formats::value_type& need_format(const Formats& formats, const st
 }
 
 TetFormatInfo info_of(const TetFormat& format) {
-  return {format.name,        format.extension, format.names,       format.surfaces,
-          format.patch_names, format.fields,    format.second_order};
+  return {format.name,        format.extension, format.names,        format.surfaces,
+          format.patch_names, format.fields,    format.second_order, static_cast<bool>(format.part_files)};
 }
 
 /// A format of several files replaces the path's extension by its own ones. The path must not have the
@@ -127,7 +128,8 @@ void check_names_format(const std::string& path, const std::string& name) {
   std::string own;
   for (const TetFormat& format : tet_formats()) {
     if (name != format.name) continue;
-    several = format.write.size() > 1;
+    several = format.write.size() > 1 ||
+              (format.write.empty() && format.part_files.names(path, PartNumber{1}).size() > 1);
     if (extension == format.extension) return;
     own.append(own.empty() ? "" : " or ").append(format.extension);
   }
@@ -150,6 +152,25 @@ const TetFormat& need_written_format(const std::string& path, const std::string&
     if (!known.ends_with(format.name)) known.append(known.empty() ? "" : " ").append(format.name);
   }
   throw UsageError("there is no format " + in_quotes(name) + " for a tet mesh; supported: " + known);
+}
+
+/// Format with this name, or the first one of the path's extension, that can hold a mesh in parts.
+const TetFormat& need_format_of_parts(const std::string& path, const std::string& name) {
+  const TetFormat& format = need_written_format(path, name);
+  if (format.part_files) return format;
+  std::string known;
+  for (const TetFormat& other : tet_formats()) {
+    if (!other.part_files) continue;
+    if (name.empty() && extension_of(path) == other.extension) return other;
+    if (!known.ends_with(other.extension)) known.append(known.empty() ? "" : " ").append(other.extension);
+  }
+  throw UsageError("--parts: " + path + " would be in the format " + format.name +
+                   ", which does not hold a mesh in parts; write one of " + known);
+}
+
+/// \param parts 0: the mesh is not divided
+const TetFormat& need_written_format(const std::string& path, const std::string& name, PartNumber parts) {
+  return parts > 0 ? need_format_of_parts(path, name) : need_written_format(path, name);
 }
 
 /// Format with this name, an extension with or without its dot, or of the path's extension if the name is
@@ -242,19 +263,21 @@ std::vector<TetFormatInfo> written_tet_formats() {
   return out;
 }
 
-TetFormatInfo written_tet_format(const std::string& path, const std::string& name) {
-  return info_of(need_written_format(path, name));
+TetFormatInfo written_tet_format(const std::string& path, const std::string& name, PartNumber parts) {
+  return info_of(need_written_format(path, name, parts));
 }
 
-NameChanges written_name_changes(const TetMesh& mesh, const std::string& path, const std::string& name) {
-  const TetFormat& format = need_written_format(path, name);
+NameChanges written_name_changes(const TetMesh& mesh, const std::string& path, const std::string& name,
+                                 PartNumber parts) {
+  const TetFormat& format = need_written_format(path, name, parts);
+  const bool in_parts = parts > 0 || format.write.empty();
   NameChanges changes = name_changes(mesh, format.parts(mesh));
   const auto add_fields = [&](const std::vector<MeshField>& fields, const std::vector<std::string>& taken) {
     if (!format.fields) return;
     add_field_changes(fields, field_names_to_write(fields, taken, format.field_name), changes.fields);
   };
-  add_fields(mesh.point_fields, {});
-  add_fields(mesh.cell_fields, format.own_cell_fields);
+  add_fields(mesh.point_fields, in_parts ? format.part_files.own_point_fields : std::vector<std::string>());
+  add_fields(mesh.cell_fields, in_parts ? format.part_files.own_cell_fields : format.own_cell_fields);
   if (!format.names) changes.material_names.clear();
   if (!format.patch_names) changes.patch_names.clear();
   return changes;
@@ -272,9 +295,11 @@ std::vector<NameChange> written_interface_name_changes(const TetMesh& mesh, cons
   return name_changes(mesh, names_of_parts(mesh, names_of_groups(format))).patch_names;
 }
 
-std::vector<std::string> files_of_tet_mesh(const std::string& path, const std::string& name) {
+std::vector<std::string> files_of_tet_mesh(const std::string& path, const std::string& name,
+                                           PartNumber parts) {
   std::vector<std::string> files;
-  const TetFormat& format = need_written_format(path, name);
+  const TetFormat& format = need_written_format(path, name, parts);
+  if (parts > 0 || format.write.empty()) return format.part_files.names(path, std::max(parts, PartNumber{1}));
   for (const WrittenFile& file : format.write)
     files.push_back(format.write.size() == 1 ? path : with_extension(path, file.extension));
   return files;
@@ -386,12 +411,26 @@ void write_interfaces(const TetMesh& mesh, const std::string& path, OutputFiles*
 void write_tet_mesh(const MeshToWrite& mesh, const std::string& path, OutputFiles* files,
                     const std::string& name) {
   const TetFormat& format = need_written_format(path, name);
+  if (format.write.empty()) {
+    write_tet_mesh(mesh, TetPartition{}, path, files, name);
+    return;
+  }
   const std::vector<std::string> paths = files_of_tet_mesh(path, name);
   const std::string first = std::filesystem::path(paths.front()).filename().string();
   std::optional<OutputFiles> own;  // makes the mesh's files appear together
   if (!files) files = &own.emplace();
   for (std::size_t i = 0; i < paths.size(); ++i)
     files->write(paths[i], [&](const ByteSink& sink) { format.write[i].write(mesh, first, sink); });
+  if (own) own->commit();
+}
+
+void write_tet_mesh(const MeshToWrite& mesh, const TetPartition& partition, const std::string& path,
+                    OutputFiles* files, const std::string& name) {
+  const TetFormat& format = need_format_of_parts(path, name);
+  const MeshPieces pieces(mesh.mesh, mesh.midside, partition);
+  std::optional<OutputFiles> own;  // makes the files appear together
+  if (!files) files = &own.emplace();
+  format.part_files.write(pieces, path, *files);
   if (own) own->commit();
 }
 
@@ -412,16 +451,18 @@ std::vector<std::string> files_of_input(const std::string& path) {
     for (const char* other : family)
       if (extension != other) files.push_back(with_extension(path, other));
   }
+  if (extension == ".pvtu")
+    for (std::string& piece : pieces_of_pvtu(path)) files.push_back(std::move(piece));
   return files;
 }
 
-void check_output_path(const std::string& path, FileKind kind, const std::string& format) {
+void check_output_path(const std::string& path, FileKind kind, const std::string& format, PartNumber parts) {
   if (kind == FileKind::surface)
     (void)need_written_format(surface_formats, path, kind, format);
   else if (kind == FileKind::volume)
     (void)need_written_format(volume_formats(), path, kind, format);
   else
-    for (const std::string& file : files_of_tet_mesh(path, format)) check_output_file(file);
+    for (const std::string& file : files_of_tet_mesh(path, format, parts)) check_output_file(file);
   if (kind != FileKind::tet_mesh) check_output_file(path);
 }
 

@@ -155,6 +155,9 @@ def inputs(p):
     for ext in TETS:
         p.must(["improve", tets, "-o", folder / f"tets.{ext}"])
         found.append((folder / f"tets.{ext}", ["improve"]))
+    pieces = folder / "pieces.pvtu"
+    p.must(["improve", tets, "-o", pieces, "--parts", "2"])
+    found += [(pieces, ["improve"]), (folder / "pieces_1.vtu", ["improve", pieces])]
     for other in ("h5", "ele", "face"):
         main = folder / ("tets.xdmf" if other == "h5" else "tets.node")
         if (folder / f"tets.{other}").exists():

@@ -8,6 +8,7 @@
 #include "common/io/tets/medit_binary.h"
 #include "common/io/tets/msh.h"
 #include "common/io/tets/nastran.h"
+#include "common/io/tets/pvtu.h"
 #include "common/io/tets/tetgen.h"
 #include "common/io/tets/vtk.h"
 #include "common/io/tets/vtu.h"
@@ -93,6 +94,24 @@ ReadTetMesh read_xdmf_alone(std::string_view bytes, const std::string& name, con
                    [](const std::string& path) -> std::string { throw InputError(path + ": is not there"); });
 }
 
+/// Reads a .pvtu file and its pieces from one text, separated by lines of equal signs; the pieces are called
+/// 0, 1 and so on.
+ReadTetMesh read_pvtu_parts(std::string_view bytes, const std::string& name, const ReadTetMeshOptions&) {
+  constexpr std::string_view between = "=====\n";
+  const auto part = [&](std::size_t number) {
+    std::string_view rest = bytes;
+    for (; number > 0; --number) {
+      const std::size_t at = rest.find(between);
+      if (at == std::string_view::npos) throw InputError(name + ": there is no such piece");
+      rest.remove_prefix(at + between.size());
+    }
+    return std::string(rest.substr(0, rest.find(between)));
+  };
+  return read_pvtu(name, {}, [&](const std::string& path) {
+    return path == name ? part(0) : part(path.size() == 1 && path[0] >= '0' ? path[0] - '0' + 1 : 1000);
+  });
+}
+
 using Bytes = std::string_view;
 constexpr Target targets[] = {
     {"vtu", [](Bytes b) { run(b, read_vtu); }},
@@ -103,6 +122,7 @@ constexpr Target targets[] = {
     {"tetgen", [](Bytes b) { run(b, read_tetgen_files); }},
     {"abaqus", [](Bytes b) { run(b, read_abaqus); }},
     {"nastran", [](Bytes b) { run(b, read_nastran); }},
+    {"pvtu", [](Bytes b) { run(b, read_pvtu_parts); }},
     {"xdmf", [](Bytes b) { run(b, read_xdmf_alone); }},
 };
 

@@ -14,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 # Files of other projects, of the build and of users.
 OTHERS = {
     "FindOpenVDB.cmake", "MeshGmshLoader.cpp", "MeshVTKLoader.cpp",
-    "blosc.h", "hdf5.h", "judge_assembly.py", "libdeflate.h", "lz4.h", "lzma.h", "main.cpp", "sysexits.h", "three.js", "three.min.js", "tiffio.h", "vtkCellType.h", "zip.h", "zlib.h", "zstd.h",
+    "blosc.h", "hdf5.h", "judge_assembly.py", "libdeflate.h", "lz4.h", "lzma.h", "main.cpp", "scotch.h", "sysexits.h", "three.js", "three.min.js", "tiffio.h", "vtkCellType.h", "zip.h", "zlib.h", "zstd.h",
 }
 OTHER_PREFIXES = ("FEBio",)
 NAME = re.compile(r"(?<![\w./<-])((?:[\w-]+/)*[\w-]+\.(?:h|cpp|py|js|css|cmake))\b(?![\w/(])")

@@ -23,6 +23,7 @@ FOLDERS_OF_LIBRARIES = {
                   "zip.h", "zlib.h", "zstd.h"),
 }
 FILES_OF_LIBRARIES = {
+    "scotch.h": ("tools/parts/scotch_graph.cpp",),
     "oneapi/": ("common/parallel/tbb_loop.cpp",),
     "tbb/": ("common/parallel/tbb_loop.cpp",),
     "openvdb/": ("mesher/level_sets/openvdb_types.h", "mesher/level_sets/openvdb_grids.cpp",

@@ -38,6 +38,14 @@ def test_one_file_cannot_be_two(tmp_path, cube_mesh):
     assert (tmp_path / "a.vtu").exists() and (tmp_path / "a.ply").exists()
 
 
+def test_meshes_are_written_in_parts(tmp_path, cube_mesh):
+    cube_mesh.write(tmp_path / "m.pvtu", parts=3)
+    assert {p.name for p in tmp_path.iterdir()} == {"m.pvtu", "m_0.vtu", "m_1.vtu", "m_2.vtu"}
+    assert tetwright.check(tmp_path / "m.pvtu")["mesh"]["tets"] == len(cube_mesh.tets)
+    with pytest.raises(tetwright.UsageError, match="--parts"):
+        cube_mesh.write(tmp_path / "m.mesh", parts=3)
+
+
 def test_every_code_has_cause_and_remedy():
     kinds = tetwright.diagnostic_kinds()
     assert len(kinds) > 70

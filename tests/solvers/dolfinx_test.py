@@ -238,6 +238,31 @@ def pressurised_sphere(folder, sizes):
     check_rates("pressurised sphere", counts, errors, energy_errors)
 
 
+def parts_on_two_ranks(folder):
+    """Reads a mesh in two parts on two ranks, each of which gets tets."""
+    length, side, parts = 4.0, 1.0, 2
+    out = folder / "parts.xdmf"
+    call = [options.tetwright, "prepare", beam(folder / "parts.obj", length, side), "-o", out, "--target-tets", "600", "--parts",
+            str(parts), "--quiet", "--no-progress"]
+    answer = subprocess.run(call, check=False, capture_output=True, text=True)
+    if answer.returncode not in (0, 1):
+        sys.exit(f"tetwright: {answer.stderr}")
+    tets = Body(out).tets
+    tag = names_of(out.with_name("parts_facets.xdmf"))["tip"]
+    # MPI, which this process has started, would take these for its own ranks.
+    environment = {name: value for name, value in os.environ.items() if not name.startswith(("OMPI_", "PMIX_", "OPAL_"))}
+    ranks = subprocess.run(["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(parts), sys.executable,
+                            pathlib.Path(__file__).with_name("dolfinx_ranks.py"), out, str(tag)],
+                           check=False, capture_output=True, text=True, env=environment)
+    if ranks.returncode != 0:
+        sys.exit(f"mpirun: {ranks.stderr}")
+    _, busy, found, volume, area = ranks.stdout.split()
+    check(f"parts: {busy} of {parts} ranks have tets", int(busy) == parts)
+    check(f"parts: {found} tets of {tets} on all ranks", int(found) == tets)
+    check("parts: the volume and the area of the tip", abs(float(volume) / (side**2 * length) - 1) < 1e-9
+          and abs(float(area) / side**2 - 1) < 1e-9)
+
+
 logging.disable(logging.INFO)  # otherwise every compiled form is logged
 parser = argparse.ArgumentParser()
 parser.add_argument("tetwright", type=pathlib.Path)
@@ -250,4 +275,5 @@ with tempfile.TemporaryDirectory(prefix="tetwright-dolfinx-") as name:
     ball_of_two_conductivities(scratch, (1000, 8000) if options.quick else (1000, 8000, 64000))
     cantilever(scratch, (600, 4000) if options.quick else (600, 4000, 30000))
     pressurised_sphere(scratch, (2000, 12000) if options.quick else (2000, 12000, 72000))
+    parts_on_two_ranks(scratch)
 sys.exit(1 if failures else 0)

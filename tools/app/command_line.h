@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "tetwright/partition.h"
 #include "tetwright/prepare.h"
 #include "tetwright/prepare_steps.h"
 
@@ -29,6 +30,7 @@ struct OutputOptions {
   std::string boundary;         ///< boundary and interfaces as a surface
   std::string boundary_format;  ///< value of --output-format if `boundary` is standard output
   bool no_boundary = false;     ///< true: write no triangles to `mesh`
+  PartNumber parts = 0;         ///< parts into which `mesh` is divided; 0: it is not
   std::string distances;        ///< .vdb file of the signed distances that were meshed
   std::string report;           ///< .html
   std::string stats;            ///< .json

@@ -24,6 +24,8 @@ constexpr std::uint64_t max_target_tets = std::uint64_t{1} << 30;
 constexpr std::uint64_t max_rounds = 10'000;
 constexpr std::uint64_t max_threads_option = 1024;
 constexpr std::uint64_t max_jobs = 64;
+/// Each part may be a file.
+constexpr std::uint64_t max_parts = 10'000;
 /// More voxels than any volume has.
 constexpr std::uint64_t max_min_voxels = 1'000'000'000'000'000'000;
 
@@ -111,6 +113,13 @@ void add_mesh_output(CLI::App& app, CommandLine& c) {
   add_whole_number(app, "--order", c.options.order, 1, 2,
                    "2: ten-node tets, with nodes in the middle of the edges; not in .mesh .meshb .node")
       ->default_str(std::to_string(c.options.order));
+  std::string of_parts;
+  for (const TetFormatInfo& format : written_tet_formats())
+    if (format.parts && !of_parts.ends_with(format.extension)) of_parts += " " + format.extension;
+  add_whole_number(app, "--parts", c.outputs.parts, 1, max_parts,
+                   "Divide the mesh into this many parts of about equal size, 1 to 10000, each with the tets "
+                   "around it, for parallel solvers:" +
+                       of_parts);
   app.add_option("--boundary", c.outputs.boundary,
                  "Write the boundary and the interfaces between materials as a surface, too (- is standard "
                  "output): " +

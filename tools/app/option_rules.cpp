@@ -79,6 +79,15 @@ void complete_output_stream(CommandLine& out) {
     check_tet_stream(out);
 }
 
+void check_parts(const CommandLine& out) {
+  if (out.outputs.parts == 0) return;
+  if (out.outputs.mesh.empty()) throw UsageError("--parts is for files; give -o FILE");
+  (void)written_tet_format(out.outputs.mesh, out.outputs.format, out.outputs.parts);
+  if (const auto& tets = out.options.target.tets; tets && *tets < out.outputs.parts)
+    throw UsageError("--parts " + std::to_string(out.outputs.parts) + ": a mesh of " + std::to_string(*tets) +
+                     " tets (--target-tets) has fewer tets than parts; give a smaller number");
+}
+
 void complete_streams(CommandLine& out) {
   check_no_stream(out);
   complete_input_stream(out);
@@ -106,6 +115,7 @@ void complete_command_line(CommandLine& out) {
     throw UsageError("--tolerance needs the surfaces that the mesh is compared with; give --surface FILE");
   if (out.options.order > 1 && !out.outputs.mesh.empty())
     check_holds_second_order(out.outputs.mesh, out.outputs.format);
+  check_parts(out);
   if (out.check.json && out.outputs.stats == "-")
     throw UsageError(
         "--json and --stats - both print to standard output; give --stats a file, or leave one out");

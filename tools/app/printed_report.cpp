@@ -149,9 +149,21 @@ void print_contacts(const std::vector<ContactReport>& contacts) {
   if (contacts.size() > max_rows) std::printf("and %zu more\n", contacts.size() - max_rows);
 }
 
+void print_parts(const PartitionStatistics& partition) {
+  const auto [fewest, most] =
+      std::minmax_element(partition.parts.begin(), partition.parts.end(),
+                          [](const PartSize& a, const PartSize& b) { return a.tets < b.tets; });
+  const auto in_pieces = std::count_if(partition.parts.begin(), partition.parts.end(),
+                                       [](const PartSize& part) { return part.pieces > 1; });
+  std::printf("%zu parts of %zu to %zu tets, %zu faces between them", partition.parts.size(), fewest->tets,
+              most->tets, partition.cut_faces);
+  if (in_pieces > 0) std::printf("; %td of them %s not connected", in_pieces, in_pieces == 1 ? "is" : "are");
+  std::printf("\n");
+}
+
 }  // namespace
 
-void print_report(const CommandLine& line, const PrepareReport& run) {
+void print_report(const CommandLine& line, const PrepareReport& run, const PartitionStatistics* parts) {
   const MeshStatistics* columns[2] = {run.dense ? &*run.dense : nullptr, run.result ? &*run.result : nullptr};
   const char* heads[2] = {line.command == Command::prepare ? "dense" : "before", "result"};
   if (line.command == Command::mesh) columns[0] = nullptr;  // the dense mesh is the result
@@ -218,6 +230,7 @@ void print_report(const CommandLine& line, const PrepareReport& run) {
         "second order: of %zu edges on surfaces %zu follow the surface, %zu partly, %zu are straight\n",
         run.second_order->edges, run.second_order->on_surface, run.second_order->part_way,
         run.second_order->straight);
+  if (parts) print_parts(*parts);
   if (run.mesher)
     std::printf("resolution %d (cells of %.4g), ", run.mesher->resolution, run.mesher->cell_size);
   std::printf("%.2f s: read %.2f", run.seconds_total, run.seconds_read);

@@ -10,7 +10,9 @@
 namespace tetwright {
 
 /// Prints the table of the meshes before and after the run to stdout.
-void print_report(const CommandLine& line, const PrepareReport& run);
+/// \param parts of the mesh; null: it is not divided
+void print_report(const CommandLine& line, const PrepareReport& run,
+                  const PartitionStatistics* parts = nullptr);
 
 /// Prints notes to stderr, each on its own line.
 void print_notes(const std::vector<std::string>& notes);

@@ -28,7 +28,7 @@ UNITS = {
     "--only-below": "steradians", "--max-iterations": "iterations", "--beta": "ideal edges", "--gamma": "", "--resolution": "cells",
     "--voxel-size": "input units", "--adaptivity": "finest cells", "--max-refinement": "halvings", "--feature-angle": "degrees",
     "--layer": "input units", "--region": "input units", "--cap": "input units", "--contact-tolerance": "input units, or % of the diagonal", "--extend": "input units, or % of the diagonal",
-    "--base": "input units", "--thicken": "input units, or % of the diagonal", "--min-voxels": "voxels", "--outside-label": "label", "--labels": "labels", "--order": "", "--jobs": "jobs",
+    "--base": "input units", "--thicken": "input units, or % of the diagonal", "--min-voxels": "voxels", "--outside-label": "label", "--labels": "labels", "--order": "", "--parts": "parts", "--jobs": "jobs",
 }
 COMMANDS_ORDER = ("prepare", "mesh", "simplify", "improve", "check", "batch", "sample")
 
@@ -197,7 +197,7 @@ $EndElementData
 
 # The programs that read each format.
 USES = {
-    "vtu": "ParaView, PyVista, VTK", "msh22": "Gmsh, most readers of `.msh`", "msh41": "Gmsh 4", "msh41-binary": "Gmsh 4, large meshes",
+    "vtu": "ParaView, PyVista, VTK", "pvtu": "ParaView and parallel solvers", "vtkhdf": "ParaView, VTK", "msh22": "Gmsh, most readers of `.msh`", "msh41": "Gmsh 4", "msh41-binary": "Gmsh 4, large meshes",
     "medit": "mmg, Medit, FreeFEM", "medit-binary": "the same, large meshes", "vtk": "SOFA, deal.II, ParaView", "abaqus": "Abaqus, CalculiX",
     "nastran": "Nastran", "febio": "FEBio", "xdmf": "dolfinx, ParaView", "tetgen": "TetGen and its readers",
 }
@@ -217,7 +217,7 @@ def tet_formats(program):
     help_text = program.help("prepare")
     names = re.search(r"of -o -: (.*?);", effect_of(help_text, "--output-format"))[1].split()
     readable = listed_extensions(re.search(r"Tet mesh: (.*)", program.help("improve"))[1])
-    extensions = {"vtu": ".vtu", "medit": ".mesh", "medit-binary": ".meshb", "vtk": ".vtk", "abaqus": ".inp", "nastran": ".bdf", "febio": ".feb",
+    extensions = {"vtu": ".vtu", "pvtu": ".pvtu", "vtkhdf": ".vtkhdf", "medit": ".mesh", "medit-binary": ".meshb", "vtk": ".vtk", "abaqus": ".inp", "nastran": ".bdf", "febio": ".feb",
                   "xdmf": ".xdmf", "tetgen": ".node"}
     rows = []
     for name in names:

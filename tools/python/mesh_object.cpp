@@ -15,6 +15,7 @@
 #include "tetwright/files.h"
 #include "tetwright/io.h"
 #include "tetwright/prepare_steps.h"
+#include "tetwright/tet_parts.h"
 #include "tools/app/commands/output_paths.h"
 #include "tools/app/commands/unwritten.h"
 #include "tools/app/option_rules.h"
@@ -101,7 +102,7 @@ py::dict fields_of_all_nodes(const Mesh& mesh) {
 }
 
 void write_mesh_files(Mesh& mesh, const std::string& path, const std::string& format,
-                      const std::string& boundary, bool no_boundary) {
+                      const std::string& boundary, bool no_boundary, PartNumber parts) {
   const py::gil_scoped_release release;
   CommandLine line;  // required by the program's checks
   line.command = Command::improve;
@@ -109,18 +110,25 @@ void write_mesh_files(Mesh& mesh, const std::string& path, const std::string& fo
   line.outputs.format = format;
   line.outputs.boundary = boundary;
   line.outputs.no_boundary = no_boundary;
+  line.outputs.parts = parts;
   check_no_standard_output(line);
   check_output_paths(line);
   if (mesh.midside) check_holds_second_order(path, format);
   OutputFiles files;
   const MidsideNodes* midside = mesh.midside ? &*mesh.midside : nullptr;
+  const auto write = [&](const TetMesh& tets) {
+    if (parts > 0)
+      write_tet_mesh({tets, midside}, partition_tets(tets, parts), path, &files, format);
+    else
+      write_tet_mesh({tets, midside}, path, &files, format);
+  };
   if (no_boundary) {
     TetMesh tets = mesh.mesh;
     tets.interfaces.clear();
     tets.patch_groups.clear();
-    write_tet_mesh({tets, midside}, path, &files, format);
+    write(tets);
   } else {
-    write_tet_mesh({mesh.mesh, midside}, path, &files, format);
+    write(mesh.mesh);
   }
   if (!boundary.empty()) write_interfaces(mesh.mesh, boundary, &files);
   files.commit();

@@ -21,7 +21,7 @@ OF_SYSTEM = {"libc.so.6", "libm.so.6", "libpthread.so.0", "libdl.so.2", "librt.s
              "ld-linux-x86-64.so.2", "ld-linux-aarch64.so.1"}
 # Libraries that a wheel may hold: their licences allow it, and none of them opens connections.
 INSIDE = {"Imath", "aec", "blosc", "boost_iostreams", "bz2", "deflate", "hdf5_serial", "log4cplus", "lz4", "lzma", "openvdb",
-          "pugixml", "snappy", "sz", "tbb", "tbbmalloc", "tiff", "z", "zip", "zstd"}
+          "pugixml", "scotch", "scotcherr", "snappy", "sz", "tbb", "tbbmalloc", "tiff", "z", "zip", "zstd"}
 # Debian packages whose headers or scripts are compiled into the program and the module.
 HEADERS = ["libcli11-dev", "libeigen3-dev", "libjs-three", "nlohmann-json3-dev"]
 # The oldest glibc that distributions combine with these versions of g++'s runtime library.

@@ -336,6 +336,19 @@ nlohmann::json overlaps_json(const std::vector<OverlapReport>& all) {
   return j;
 }
 
+nlohmann::json partition_json(const PartitionStatistics& partition) {
+  nlohmann::json j = {{"imbalance", partition.imbalance},
+                      {"cut_faces", partition.cut_faces},
+                      {"each", nlohmann::json::array()}};
+  for (const PartSize& part : partition.parts)
+    j["each"].push_back({{"tets", part.tets},
+                         {"points", part.points},
+                         {"ghosts", part.ghosts},
+                         {"neighbours", part.neighbours},
+                         {"pieces", part.pieces}});
+  return j;
+}
+
 /// Adds how the dense mesh was made to its statistics.
 void add_mesher_json(const MesherReport& m, nlohmann::json& dense) {
   dense["cell_size"] = m.cell_size;
@@ -425,6 +438,7 @@ std::string stats_json(const CommandRun& ended) {
                          {"on_surface", run.second_order->on_surface},
                          {"part_way", run.second_order->part_way},
                          {"straight", run.second_order->straight}};
+  if (ended.parts) j["parts"] = partition_json(*ended.parts);
   if (run.edge_lengths) j["edge_lengths"] = edge_lengths_json(*run.edge_lengths, run.sizes);
   if (run.crease_comparison) j["creases"] = creases_json(*run.crease_comparison);
   j["iterations"] = nlohmann::json::array();

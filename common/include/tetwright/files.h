@@ -76,7 +76,7 @@ void remove_temporary_files(const std::string& path, int process) noexcept;
 /// Async-signal-safe.
 ///
 /// The handler's signal must be blocked while a file is created or renamed; SIGHUP, SIGINT and SIGTERM are
-/// blocked in the thread that does so. Files beyond the 256th at a time, or with names longer than 4,000
+/// blocked in the thread that does so. Files beyond the 1,024th at a time, or with names longer than 4,000
 /// bytes, are unknown to this function.
 /// \return whether the process has ever committed a file
 bool abandon_output_files() noexcept;

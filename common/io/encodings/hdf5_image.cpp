@@ -40,14 +40,16 @@ struct Hdf5Writer::File {
   template <class Number>
   void add(const std::string& name, std::span<const Number> values, std::size_t columns, hid_t stored,
            hid_t native) {
+    const int dimensions = columns == 0 ? 1 : 2;
+    columns = std::max<std::size_t>(columns, 1);
     const std::array<hsize_t, 2> size{values.size() / columns, columns};
-    const Hdf5Handle space(H5Screate_simple(2, size.data(), nullptr), H5Sclose);
+    const Hdf5Handle space(H5Screate_simple(dimensions, size.data(), nullptr), H5Sclose);
     const Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     H5Pset_obj_track_times(creation.id(), false);  // same bytes for the same content
     if (size[0] > 0) {
       const std::array<hsize_t, 2> chunk{
           std::clamp<hsize_t>(max_chunk_bytes / (sizeof(Number) * columns), 1, size[0]), columns};
-      H5Pset_chunk(creation.id(), 2, chunk.data());
+      H5Pset_chunk(creation.id(), dimensions, chunk.data());
       H5Pset_deflate(creation.id(), compression_level);
     }
     const Hdf5Handle dataset(
@@ -56,6 +58,15 @@ struct Hdf5Writer::File {
     if (!dataset.good() || H5Dwrite(dataset.id(), native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
       throw OutputError("the HDF5 library cannot write " + std::to_string(values.size()) + " numbers of '" +
                         name + "'; is there enough memory?");
+  }
+
+  void add_attribute(const std::string& group, const std::string& name, hid_t stored, hid_t space,
+                     hid_t native, const void* values) {
+    const Handle attribute(H5Acreate_by_name(handle.id(), group.c_str(), name.c_str(), stored, space,
+                                             H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                           H5Aclose);
+    if (!attribute.good() || H5Awrite(attribute.id(), native, values) < 0)
+      throw OutputError("the HDF5 library cannot add the attribute '" + name + "'");
   }
 };
 
@@ -76,6 +87,28 @@ void Hdf5Writer::add(const std::string& name, std::span<const std::int64_t> valu
 }
 void Hdf5Writer::add(const std::string& name, std::span<const std::int32_t> values, std::size_t columns) {
   file_->add(name, values, columns, H5T_STD_I32LE, H5T_NATIVE_INT32);
+}
+void Hdf5Writer::add(const std::string& name, std::span<const std::uint8_t> values, std::size_t columns) {
+  file_->add(name, values, columns, H5T_STD_U8LE, H5T_NATIVE_UINT8);
+}
+
+void Hdf5Writer::add_group(const std::string& name) {
+  const Handle group(H5Gcreate2(file_->handle.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                     H5Gclose);
+  if (!group.good()) throw OutputError("the HDF5 library cannot add the group '" + name + "'");
+}
+
+void Hdf5Writer::add_attribute(const std::string& group, const std::string& name, const std::string& text) {
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
+  H5Tset_size(type.id(), text.size());
+  H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
+  file_->add_attribute(group, name, type.id(), space.id(), type.id(), text.data());
+}
+void Hdf5Writer::add_attribute(const std::string& group, const std::string& name,
+                               std::span<const std::int64_t> values) {
+  const hsize_t size = values.size();
+  const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
+  file_->add_attribute(group, name, H5T_STD_I64LE, space.id(), H5T_NATIVE_INT64, values.data());
 }
 
 std::string Hdf5Writer::bytes() {

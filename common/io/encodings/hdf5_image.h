@@ -17,11 +17,18 @@ class Hdf5Writer {
   Hdf5Writer();
   ~Hdf5Writer();
 
+  /// Adds a group with this name, for names such as "group/dataset".
+  void add_group(const std::string& name);
+  /// Add attributes to a group: a text, and a list of numbers.
+  void add_attribute(const std::string& group, const std::string& name, const std::string& text);
+  void add_attribute(const std::string& group, const std::string& name, std::span<const std::int64_t> values);
   /// Adds a dataset with `columns` numbers in each row, compressed by zlib.
-  /// \param name without slashes
+  /// \param name path of a group that was added, and a name without slashes; or only the latter
+  /// \param columns 0: a list, with one dimension
   void add(const std::string& name, std::span<const double> values, std::size_t columns);
   void add(const std::string& name, std::span<const std::int64_t> values, std::size_t columns);
   void add(const std::string& name, std::span<const std::int32_t> values, std::size_t columns);
+  void add(const std::string& name, std::span<const std::uint8_t> values, std::size_t columns);
   /// Bytes of the file; equal datasets give equal bytes.
   std::string bytes();
 

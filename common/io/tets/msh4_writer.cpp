@@ -6,9 +6,9 @@
 #include <set>
 #include <vector>
 
-#include "common/io/encodings/byte_order.h"
 #include "common/io/names/mesh_parts.h"
 #include "common/io/tets/msh.h"
+#include "common/io/tets/msh4_numbers.h"
 #include "common/io/tets/msh_data.h"
 #include "common/io/tets/msh_elements.h"
 #include "common/io/tets/msh_groups.h"
@@ -17,45 +17,6 @@
 namespace tetwright {
 
 namespace {
-
-constexpr int surface_dimension = 2, volume_dimension = 3;
-
-/// Writes the numbers of a section as text or little-endian.
-class Numbers {
- public:
-  Numbers(TextWriter& out, bool binary) : out_(out), binary_(binary) {}
-
-  Numbers& integer(std::int64_t value) { return put(static_cast<std::int32_t>(value)); }
-  Numbers& size(std::size_t value) { return put(std::uint64_t{value}); }
-  Numbers& real(double value) { return put(value); }
-  /// Ends a line in a text file.
-  void end_line() {
-    if (!binary_) out_ << '\n';
-    begins_line_ = true;
-  }
-  /// Ends the section with "$End" and its name.
-  void end(const char* section) { out_ << (binary_ ? "\n$End" : "$End") << section << '\n'; }
-
- private:
-  template <class Number>
-  Numbers& put(Number value) {
-    if (binary_) {
-      bytes_.clear();
-      append_bytes(bytes_, value);
-      out_ << bytes_;
-    } else {
-      if (!begins_line_) out_ << ' ';
-      out_ << value;
-    }
-    begins_line_ = false;
-    return *this;
-  }
-
-  TextWriter& out_;
-  bool binary_;
-  bool begins_line_ = true;
-  std::string bytes_;
-};
 
 /// A volume or surface of Gmsh's model, with a physical group of the same number.
 struct Entity {
@@ -77,20 +38,14 @@ class Msh4Writer {
         out_(sink),
         numbers_(out_, binary),
         binary_(binary),
-        physical_(positive_numbers(tags_of(mesh_.materials), max_number)) {
+        physical_(msh4_volumes(mesh_)) {
     collect_entities();
     classify_nodes();
   }
 
   void write() {
-    out_ << "$MeshFormat\n4.1 " << (binary_ ? 1 : 0) << " 8\n";
-    if (binary_) {
-      numbers_.integer(1);
-      out_ << '\n';
-    }
-    out_ << "$EndMeshFormat\n";
-    write_comments();
-    write_names();
+    numbers_.begin_file();
+    write_msh4_groups(out_, groups_, physical_);
     write_entities();
     write_nodes();
     write_elements();
@@ -103,8 +58,6 @@ class Msh4Writer {
   }
 
  private:
-  static constexpr std::int64_t max_number = std::numeric_limits<std::int32_t>::max();
-
   void collect_entities() {
     std::map<std::int64_t, Entity> surfaces, volumes;
     for (std::size_t i = 0; i < mesh_.interfaces.size(); ++i) {
@@ -164,31 +117,6 @@ class Msh4Writer {
         for (const std::size_t m : msh_midside_order) add_midside(written_.midside->of_tets[element][m]);
     }
     return nodes;
-  }
-
-  /// Writes comments with those tags that cannot be numbers of physical groups.
-  void write_comments() {
-    bool any = false;
-    for (const auto& [tag, number] : physical_) {
-      if (tag == number) continue;
-      if (!any) out_ << "$Comments\n";
-      any = true;
-      out_ << msh_material_comment << number << ' ' << tag << '\n';
-    }
-    if (any) out_ << "$EndComments\n";
-  }
-
-  void write_names() {
-    std::map<std::int64_t, std::string> volumes;
-    for (const auto& [tag, name] : groups_.material_names)
-      if (const auto number = physical_.find(tag); number != physical_.end()) volumes[number->second] = name;
-    if (volumes.empty() && groups_.face_names.empty()) return;
-    out_ << "$PhysicalNames\n" << groups_.face_names.size() + volumes.size() << '\n';
-    for (const auto& [number, name] : groups_.face_names)
-      out_ << surface_dimension << ' ' << number << " \"" << name << "\"\n";
-    for (const auto& [number, name] : volumes)
-      out_ << volume_dimension << ' ' << number << " \"" << name << "\"\n";
-    out_ << "$EndPhysicalNames\n";
   }
 
   void write_entities() {
@@ -267,7 +195,7 @@ class Msh4Writer {
   const TetMesh& mesh_;
   MshGroups groups_;
   TextWriter out_;
-  Numbers numbers_;
+  Msh4Numbers numbers_;
   bool binary_;
   std::map<std::int64_t, std::int64_t> physical_;  ///< physical groups by material
   std::vector<Entity> entities_;                   ///< surfaces, then volumes

@@ -103,7 +103,8 @@ std::vector<MeshField> fields_of_elements(const TetMesh& mesh) {
 }
 
 void append_msh_data(std::string& out, const std::string& section, const std::vector<MeshField>& fields,
-                     std::size_t items, bool binary, const std::vector<std::size_t>& order) {
+                     std::size_t items, bool binary, const std::vector<std::size_t>& order,
+                     const std::vector<std::size_t>& numbers) {
   const std::vector<std::string> names = field_names_to_write(fields, {}, msh_name);
   // Appends a section with `used` components of each item, from component `first` on, padded to `written`
   // components.
@@ -118,12 +119,13 @@ void append_msh_data(std::string& out, const std::string& section, const std::ve
     };
     for (std::size_t row = 0; row < items; ++row) {
       const std::size_t i = order.empty() ? row : order[row];
+      const std::size_t number = numbers.empty() ? i + 1 : numbers[i];
       if (binary) {
-        append_bytes(out, static_cast<std::int32_t>(i + 1));
+        append_bytes(out, static_cast<std::int32_t>(number));
         for (int k = 0; k < written; ++k) append_bytes(out, value(i, k));
         continue;
       }
-      append_number(out, i + 1);
+      append_number(out, number);
       for (int k = 0; k < written; ++k) {
         out += ' ';
         append_value(out, value(i, k));

@@ -37,8 +37,10 @@ std::vector<MeshField> fields_of_elements(const TetMesh& mesh);
 /// \param section keyword without the dollar sign
 /// \param order order in which the file lists the items (empty: ascending); rows must follow it, since meshio
 ///   5.0 ignores their numbers in text files
+/// \param numbers numbers of the items in the file; empty: from 1
 void append_msh_data(std::string& out, const std::string& section, const std::vector<MeshField>& fields,
-                     std::size_t items, bool binary = false, const std::vector<std::size_t>& order = {});
+                     std::size_t items, bool binary = false, const std::vector<std::size_t>& order = {},
+                     const std::vector<std::size_t>& numbers = {});
 
 /// Converts a name to a form for quotes: quotes, backslashes and control characters become underscores, and
 /// invalid UTF-8 becomes replacement characters, which other readers require. At most 120 bytes: Gmsh 4.8.4

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/io/names/mesh_parts.h"
+#include "common/mesh/mesh_pieces.h"
 #include "tetwright/files.h"
 #include "tetwright/io.h"
 #include "tetwright/tet_mesh.h"
@@ -19,6 +20,16 @@ struct WrittenFile {
   void (*write)(const MeshToWrite& mesh, const std::string& first, const ByteSink& sink);
 };
 
+/// How a format holds a mesh in parts, each with the tets of others next to it.
+struct PartFiles {
+  std::vector<std::string> (*names)(const std::string& path, PartNumber parts) = nullptr;  ///< of the files
+  void (*write)(const MeshPieces& pieces, const std::string& path, OutputFiles& files) = nullptr;
+  // Fields that the writer adds itself, as TetFormat::own_cell_fields.
+  std::vector<std::string> own_point_fields = {}, own_cell_fields = {};
+
+  explicit operator bool() const { return write != nullptr; }
+};
+
 /// A tet mesh format: its reader, its writer and the contents that it can store.
 struct TetFormat {
   const char* extension;
@@ -27,7 +38,10 @@ struct TetFormat {
   ReadTetMesh (*read)(std::string_view bytes, const std::string& name,
                       const ReadTetMeshOptions& options) = nullptr;
   ReadTetMesh (*read_files)(const std::string& path, const ReadTetMeshOptions& options) = nullptr;
-  std::vector<WrittenFile> write;  ///< empty: the format can only be read
+  /// Files of a mesh that is not divided. Empty: the format can only be read or holds only parts, so that an
+  /// undivided mesh is written as one part.
+  std::vector<WrittenFile> write = {};
+  PartFiles part_files = {};
   /// Parts of a mesh, with the names that the writer gives them.
   MeshParts (*parts)(const TetMesh& mesh) = nullptr;
   /// Cell fields that the writer adds itself; no other field may have their names.

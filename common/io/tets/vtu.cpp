@@ -12,6 +12,7 @@
 
 #include "common/io/elements/midside_nodes_read.h"
 #include "common/io/elements/vtk_cells.h"
+#include "common/io/elements/vtk_pieces.h"
 #include "common/io/encodings/vtu_data.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/names/mesh_parts.h"
@@ -26,26 +27,33 @@ namespace {
 
 class VtuReader {
  public:
-  VtuReader(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options)
-      : data_(bytes, name), name_(name), options_(options), file_size_(bytes.size()) {}
+  VtuReader(const std::string& name, const ReadTetMeshOptions& options) : name_(name), options_(options) {}
 
-  ReadTetMesh read() {
-    const std::vector<pugi::xml_node> pieces = data_.pieces("UnstructuredGrid");
+  /// Adds the pieces of a file. The bytes must outlive the next call.
+  void add_file(std::string_view bytes, const std::string& name) {
+    data_.emplace(bytes, name);
+    file_size_ = bytes.size();
+    const std::vector<pugi::xml_node> pieces = data_->pieces("UnstructuredGrid");
+    grid_ = pieces[0].parent();
     for (const pugi::xml_node piece : pieces) read_piece(piece);
+    read_names(grid_);
+    note_dropped_arrays(grid_, pieces);
+  }
+
+  ReadTetMesh finish() {
     if (result_.mesh.tets.empty())
-      data_.fail(pieces[0].parent(), "there are no tets (type 10 or 24) among its " + std::to_string(cells_) +
-                                         " cells; a tet mesh is needed");
+      data_->fail(grid_, "there are no tets (type 10 or 24) among its " + std::to_string(cells_) +
+                             " cells; a tet mesh is needed");
     other_cells_.append_flat_to(result_.dropped);
-    if (pieces.size() > 1) join_pieces();
+    if (first_points_.size() > 1) join_pieces();
     for (std::size_t t = 0; t < midside_of_tets_.size(); t += midside_per_tet)
       midside_.add_tet(std::span(midside_of_tets_).subspan(t, midside_per_tet));
-    read_names(pieces[0].parent());
     for (std::size_t t = 0; t < midside_of_triangles_.size(); t += midside_per_triangle)
       midside_.add_triangle(std::span(midside_of_triangles_).subspan(t, midside_per_triangle));
     midside_.remove_from(result_, triangles_.triangles);
     take_material(result_, options_, name_);
     take_triangles(triangles_, "surface", name_, result_);
-    note_dropped_arrays(pieces[0].parent(), pieces);
+    append_dropped_arrays();
     rounded_.append_to(result_.dropped);
     return std::move(result_);
   }
@@ -53,18 +61,16 @@ class VtuReader {
  private:
   static constexpr std::size_t midside_per_tet = 6, midside_per_triangle = 3;
   static constexpr std::size_t cell_grain = 1 << 14;  ///< cells for each task: some nanoseconds each
-  /// VTK's array that marks points and cells that another piece also has.
-  static constexpr const char* ghost_marks = "vtkGhostType";
 
   /// Adds the points, tets and fields of a piece.
   void read_piece(pugi::xml_node piece) {
     TetMesh& mesh = result_.mesh;
-    const std::size_t points = data_.count(piece, "NumberOfPoints"),
-                      cells = data_.count(piece, "NumberOfCells"), first_tet = mesh.tets.size();
+    const std::size_t points = data_->count(piece, "NumberOfPoints"),
+                      cells = data_->count(piece, "NumberOfCells"), first_tet = mesh.tets.size();
     if (mesh.points.size() + points >= no_index)
-      data_.fail(piece, "more than " + std::to_string(no_index - 1) + " points; split the mesh");
+      data_->fail(piece, "more than " + std::to_string(no_index - 1) + " points; split the mesh");
     first_points_.push_back(static_cast<Index>(mesh.points.size()));
-    std::vector<Vec3> of_piece = data_.points(piece, points);
+    std::vector<Vec3> of_piece = data_->points(piece, points);
     if (mesh.points.empty())
       mesh.points = std::move(of_piece);
     else
@@ -72,10 +78,10 @@ class VtuReader {
     const std::optional<std::vector<std::size_t>> tet_to_cell = read_cells(piece, points, cells);
     cells_ += cells;
     const bool has_surfaces = take_surfaces(piece, cells);
-    add_fields(mesh.point_fields, data_.fields(piece.child("PointData"), points, nullptr, &rounded_),
+    add_fields(mesh.point_fields, data_->fields(piece.child("PointData"), points, nullptr, &rounded_),
                first_points_.back(), points);
     std::vector<MeshField> cell_fields =
-        data_.fields(piece.child("CellData"), cells, tet_to_cell ? &*tet_to_cell : nullptr, &rounded_);
+        data_->fields(piece.child("CellData"), cells, tet_to_cell ? &*tet_to_cell : nullptr, &rounded_);
     if (has_surfaces)
       std::erase_if(cell_fields, [](const MeshField& field) { return field.name == vtk_surface_field; });
     add_fields(mesh.cell_fields, std::move(cell_fields), first_tet, mesh.tets.size() - first_tet);
@@ -91,8 +97,8 @@ class VtuReader {
     const std::string_view type = node.attribute("type").as_string();
     if (triangles.empty() || !node || type.find("Int") == type.npos) return false;
     if (node.attribute("NumberOfComponents").as_int(1) != 1) return false;
-    const std::vector<std::int64_t> numbers = data_.integers(node, cells);
-    data_.expect_size(node, numbers.size(), cells);
+    const std::vector<std::int64_t> numbers = data_->integers(node, cells);
+    data_->expect_size(node, numbers.size(), cells);
     for (const FileTriangle& t : triangles) {
       triangles_.add(t.corners, numbers[t.cell]);
       if (t.quadratic)
@@ -109,7 +115,7 @@ class VtuReader {
   void add_fields(std::vector<MeshField>& all, std::vector<MeshField> added, std::size_t before,
                   std::size_t items) {
     // The marked items are removed already.
-    std::erase_if(added, [](const MeshField& field) { return field.name == ghost_marks; });
+    std::erase_if(added, [](const MeshField& field) { return field.name == vtk_ghosts; });
     if (items == 0) return;
     if (before == 0) {
       all = std::move(added);
@@ -135,8 +141,8 @@ class VtuReader {
   /// Marks in vtkGhostType: cells that a neighbouring piece also has.
   std::vector<std::int64_t> ghosts(pugi::xml_node piece, std::size_t cells) const {
     const pugi::xml_node node =
-        piece.child("CellData").find_child_by_attribute("DataArray", "Name", ghost_marks);
-    return node ? data_.integers(node, cells) : std::vector<std::int64_t>();
+        piece.child("CellData").find_child_by_attribute("DataArray", "Name", vtk_ghosts);
+    return node ? data_->integers(node, cells) : std::vector<std::int64_t>();
   }
 
   /// Takes the cells if all are tets of four points within the piece, each listed once.
@@ -169,18 +175,17 @@ class VtuReader {
   /// \return the cell indices of the tets; nothing if all cells are tets
   std::optional<std::vector<std::size_t>> read_cells(pugi::xml_node piece, std::size_t points,
                                                      std::size_t cell_count) {
-    constexpr std::int64_t duplicate_cell = 1;
     const pugi::xml_node cells = piece.child("Cells");
-    if (!cells) data_.fail(piece, "there are no Cells in it");
-    const pugi::xml_node types_node = data_.array(cells, "types"),
-                         offsets_node = data_.array(cells, "offsets"),
-                         connectivity_node = data_.array(cells, "connectivity");
-    const std::vector<std::uint32_t> types = data_.counts(types_node, cell_count);
-    data_.expect_size(types_node, types.size(), cell_count);
-    const std::vector<std::uint32_t> offsets = data_.counts(offsets_node, cell_count);
-    data_.expect_size(offsets_node, offsets.size(), cell_count);
+    if (!cells) data_->fail(piece, "there are no Cells in it");
+    const pugi::xml_node types_node = data_->array(cells, "types"),
+                         offsets_node = data_->array(cells, "offsets"),
+                         connectivity_node = data_->array(cells, "connectivity");
+    const std::vector<std::uint32_t> types = data_->counts(types_node, cell_count);
+    data_->expect_size(types_node, types.size(), cell_count);
+    const std::vector<std::uint32_t> offsets = data_->counts(offsets_node, cell_count);
+    data_->expect_size(offsets_node, offsets.size(), cell_count);
     const std::vector<std::uint32_t> connectivity =
-        data_.counts(connectivity_node, offsets.empty() ? 0 : offsets.back());
+        data_->counts(connectivity_node, offsets.empty() ? 0 : offsets.back());
     const std::vector<std::int64_t> ghost = ghosts(piece, cell_count);
     if (ghost.empty() && take_plain_tets(types, offsets, connectivity, points)) return std::nullopt;
     const Index first_point = first_points_.back();
@@ -191,22 +196,23 @@ class VtuReader {
     const auto node_of = [&](std::size_t c, std::size_t k) {
       const std::uint32_t id = connectivity[begin + k];
       if (id >= points)
-        data_.fail(connectivity_node, "cell " + std::to_string(c) + " refers to point " + std::to_string(id) +
-                                          " of " + std::to_string(points) + "; export the file again");
+        data_->fail(connectivity_node, "cell " + std::to_string(c) + " refers to point " +
+                                           std::to_string(id) + " of " + std::to_string(points) +
+                                           "; export the file again");
       return first_point + id;
     };
     for (std::size_t c = 0; c < cell_count; ++c) {
       const std::size_t end = offsets[c];
       if (end < begin || end > connectivity.size())
-        data_.fail(offsets_node, "cell " + std::to_string(c) + " ends at index " + std::to_string(end) +
-                                     " of " + std::to_string(connectivity.size()) + "; the file is damaged");
-      if (c < ghost.size() && (ghost[c] & duplicate_cell)) {
+        data_->fail(offsets_node, "cell " + std::to_string(c) + " ends at index " + std::to_string(end) +
+                                      " of " + std::to_string(connectivity.size()) + "; the file is damaged");
+      if (c < ghost.size() && (ghost[c] & vtk_duplicate)) {
         ++ghost_cells_;
       } else if (is_vtk_tet(types[c])) {
         const std::size_t nodes = vtk_element_type(types[c])->nodes;
         if (end - begin != nodes)
-          data_.fail(offsets_node, "cell " + std::to_string(c) + " is a tet of " +
-                                       std::to_string(end - begin) + " points; the file is damaged");
+          data_->fail(offsets_node, "cell " + std::to_string(c) + " is a tet of " +
+                                        std::to_string(end - begin) + " points; the file is damaged");
         std::array<Index, 4 + midside_per_tet> ids;
         for (std::size_t k = 0; k < nodes; ++k) ids[k] = node_of(c, k);
         result_.mesh.tets.push_back({ids[0], ids[1], ids[2], ids[3]});
@@ -225,7 +231,7 @@ class VtuReader {
       }
       begin = end;
     }
-    if (other_cells_.has_volumes()) data_.fail(types_node, other_cells_.refusal());
+    if (other_cells_.has_volumes()) data_->fail(types_node, other_cells_.refusal());
     if (tet_to_cell.size() == cell_count) return std::nullopt;
     return tet_to_cell;
   }
@@ -297,7 +303,7 @@ class VtuReader {
     if (!node) return {};
     std::string text;
     // Compressed data may be larger than the file, but names hardly are.
-    for (std::int64_t c : data_.integers(node, file_size_)) text += static_cast<char>(c);
+    for (std::int64_t c : data_->integers(node, file_size_)) text += static_cast<char>(c);
     return parse_vtk_names(text, array, name_);
   }
 
@@ -319,7 +325,7 @@ class VtuReader {
     const auto name_of = [](pugi::xml_node node) { return field_name(node.attribute("Name").as_string()); };
     std::vector<std::string> of_dataset, text;
     // Some programs put FieldData next to the grid or into a piece.
-    std::vector<pugi::xml_node> parents{data_.root(), grid};
+    std::vector<pugi::xml_node> parents{data_->root(), grid};
     parents.insert(parents.end(), pieces.begin(), pieces.end());
     for (const pugi::xml_node parent : parents)
       for (const pugi::xml_node node : parent.child("FieldData").children())
@@ -328,8 +334,14 @@ class VtuReader {
     for (const char* part : {"PointData", "CellData"})
       for (const pugi::xml_node node : pieces[0].child(part).children())
         if (is_array(node) && !holds_numbers(node)) text.push_back(name_of(node));
-    append_dropped_names(result_.dropped, "arrays of the whole dataset", of_dataset);
-    append_dropped_names(result_.dropped, "arrays of text", text);
+    for (const auto& [from, to] : {std::pair(&of_dataset, &dataset_arrays_), {&text, &text_arrays_}})
+      for (const std::string& name : *from)
+        if (std::find(to->begin(), to->end(), name) == to->end()) to->push_back(name);
+  }
+
+  void append_dropped_arrays() {
+    append_dropped_names(result_.dropped, "arrays of the whole dataset", dataset_arrays_);
+    append_dropped_names(result_.dropped, "arrays of text", text_arrays_);
     append_dropped_names(result_.dropped, "fields missing from some pieces", field_names_of_some_pieces_);
     if (ghost_cells_ > 0)
       result_.dropped.push_back({"cells that also belong to other pieces (vtkGhostType)", ghost_cells_});
@@ -345,17 +357,18 @@ class VtuReader {
     std::array<Index, midside_per_triangle> midside;
   };
 
-  VtuData data_;
+  std::optional<VtuData> data_;  ///< the file that is being read
+  pugi::xml_node grid_;          ///< of this file
+  std::size_t file_size_ = 0;    ///< of this file
   std::string name_;
   const ReadTetMeshOptions& options_;
-  std::size_t file_size_;
   std::size_t cells_ = 0, ghost_cells_ = 0, joined_points_ = 0;
   std::vector<Index> first_points_;     ///< of each piece
   std::vector<Index> midside_of_tets_;  ///< for tets of ten nodes
   std::vector<Index> midside_of_triangles_;
   std::vector<FileTriangle> triangles_of_piece_;
   FileTriangles triangles_;
-  std::vector<std::string> field_names_of_some_pieces_;
+  std::vector<std::string> field_names_of_some_pieces_, dataset_arrays_, text_arrays_;
   OtherVtkCells other_cells_;
   KindCounts rounded_;  ///< rounded integers of fields
   MidsideNodesRead midside_;
@@ -365,7 +378,20 @@ class VtuReader {
 }  // namespace
 
 ReadTetMesh read_vtu(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options) {
-  return VtuReader(bytes, name, options).read();
+  VtuReader reader(name, options);
+  reader.add_file(bytes, name);
+  return reader.finish();
+}
+
+ReadTetMesh read_vtu_files(const std::vector<std::string>& files, const std::string& name,
+                           const ReadTetMeshOptions& options, const FileReader& read_file) {
+  VtuReader reader(name, options);
+  std::string bytes;
+  for (const std::string& file : files) {
+    bytes = read_file(file);
+    reader.add_file(bytes, file);
+  }
+  return reader.finish();
 }
 
 }  // namespace tetwright

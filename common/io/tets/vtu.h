@@ -3,8 +3,10 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/io/names/mesh_parts.h"
+#include "common/io/volumes/data_file.h"
 #include "tetwright/io.h"
 
 namespace tetwright {
@@ -20,6 +22,10 @@ namespace tetwright {
 /// \param name file name for messages
 /// \throws InputError with the byte offset for malformed contents
 ReadTetMesh read_vtu(std::string_view bytes, const std::string& name, const ReadTetMeshOptions& options = {});
+/// Reads the pieces of several files as if they were in one.
+/// \param name file name for messages about all of them
+ReadTetMesh read_vtu_files(const std::vector<std::string>& files, const std::string& name,
+                           const ReadTetMeshOptions& options, const FileReader& read_file);
 
 /// Content of a file, compressed by zlib: points as Float64; materials as the integer cell field "material";
 /// their names as the FieldData array "material_names" of UTF-8 lines "tag<TAB>name", in which underscores

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
 #include <map>
 #include <utility>
 #include <vector>
@@ -10,7 +9,7 @@
 #include "common/io/names/mesh_fields.h"
 #include "common/io/names/mesh_parts.h"
 #include "common/io/tets/vtu.h"
-#include "common/io/text/xml_text.h"
+#include "common/io/tets/vtu_fields.h"
 #include "common/mesh/boundary_groups.h"
 #include "common/unique_names.h"
 #include "tetwright/sheets.h"
@@ -18,21 +17,6 @@
 namespace tetwright {
 
 namespace {
-
-void write_field(const ByteSink& sink, const MeshField& field, const std::string& name) {
-  const auto write = [&]<class Number>(Number, const char* type) {
-    write_vtu_numbers(sink, type, xml_text(name),
-                      "NumberOfComponents=\"" + std::to_string(field.components) + "\" ", field.values.size(),
-                      [&](std::size_t i) { return static_cast<Number>(field.values[i]); });
-  };
-  const auto narrow = [](double value) { return value >= INT32_MIN && value <= INT32_MAX; };
-  if (!field.integer || !all_whole(field))
-    write(double{}, "Float64");
-  else if (std::all_of(field.values.begin(), field.values.end(), narrow))
-    write(std::int32_t{}, "Int32");
-  else
-    write(std::int64_t{}, "Int64");
-}
 
 /// The sheets of the mesh, without tets.
 TetMesh only_sheets(const TetMesh& mesh) {
@@ -130,7 +114,8 @@ void write_vtu(const MeshToWrite& written, const ByteSink& sink) {
     sink("<PointData>\n");
     const std::vector<MeshField> fields = written.node_fields();
     const std::vector<std::string> names = field_names_to_write(fields, {});
-    for (std::size_t f = 0; f < names.size(); ++f) write_field(sink, fields[f], names[f]);
+    for (std::size_t f = 0; f < names.size(); ++f)
+      write_vtu_field(sink, fields[f], names[f], field_type(fields[f]));
     sink("</PointData>\n");
   }
   sink("<CellData Scalars=\"material\">\n");
@@ -146,10 +131,12 @@ void write_vtu(const MeshToWrite& written, const ByteSink& sink) {
   }
   const std::vector<std::string> names = field_names_to_write(mesh.cell_fields, taken);
   for (std::size_t f = 0; f < names.size(); ++f)
-    if (sheets.faces.empty())
-      write_field(sink, mesh.cell_fields[f], names[f]);
-    else
-      write_field(sink, with_triangles(mesh.cell_fields[f], sheets.faces.size()), names[f]);
+    if (sheets.faces.empty()) {
+      write_vtu_field(sink, mesh.cell_fields[f], names[f], field_type(mesh.cell_fields[f]));
+    } else {
+      const MeshField extended = with_triangles(mesh.cell_fields[f], sheets.faces.size());
+      write_vtu_field(sink, extended, names[f], field_type(extended));
+    }
   sink("</CellData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>\n");
 }
 

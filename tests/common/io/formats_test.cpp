@@ -25,9 +25,10 @@ TEST_F(Formats, KindsByExtension) {
     EXPECT_EQ(file_kind(name, FileUse::write), FileKind::tet_mesh);
   }
   EXPECT_EQ(file_kind("x.feb"), FileKind::unknown);
-  EXPECT_EQ(known_extensions(FileKind::tet_mesh), ".vtu .msh .mesh .meshb .vtk .inp .bdf .xdmf .node .ele");
+  EXPECT_EQ(known_extensions(FileKind::tet_mesh),
+            ".vtu .pvtu .msh .mesh .meshb .vtk .inp .bdf .xdmf .node .ele");
   EXPECT_EQ(known_extensions(FileKind::tet_mesh, FileUse::write),
-            ".vtu .msh .mesh .meshb .vtk .inp .bdf .feb .xdmf .node .ele");
+            ".vtu .pvtu .vtkhdf .msh .mesh .meshb .vtk .inp .bdf .feb .xdmf .node .ele");
   for (const char* name : {"", "ply", "a/.ply/b", "x.vtl", "x.", "x.ply "})
     EXPECT_EQ(file_kind(name), FileKind::unknown);
 }
@@ -102,7 +103,7 @@ TEST_F(Formats, EveryFormatOfTetMeshesIsWritten) {
   EXPECT_FALSE(written_tet_format("a.node").second_order);
   const std::string message = error_of<UsageError>([] { (void)written_tet_format("a.msh", "msh5"); });
   EXPECT_NE(message.find("no format \"msh5\""), std::string::npos) << message;
-  EXPECT_NE(message.find("vtu msh22 msh41 msh41-binary"), std::string::npos) << message;
+  EXPECT_NE(message.find("vtu pvtu vtkhdf msh22 msh41 msh41-binary"), std::string::npos) << message;
 }
 
 TEST_F(Formats, SeveralFilesHaveExtensionsOfTheirOwn) {
@@ -165,7 +166,9 @@ TEST_F(Formats, UnknownExtensions) {
   const std::string in = error_of<UsageError>([&] { (void)read_surface(path("x.xyz")); });
   EXPECT_NE(in.find("\".xyz\" for a surface; supported: .ply .obj .stl .off"), std::string::npos) << in;
   const std::string out = error_of<UsageError>([&] { check_output_path(path("x")); });
-  EXPECT_NE(out.find("no extension for a tet mesh; supported: .vtu .msh .mesh"), std::string::npos) << out;
+  EXPECT_NE(out.find("no extension for a tet mesh; supported: .vtu .pvtu .vtkhdf .msh .mesh"),
+            std::string::npos)
+      << out;
   // Formats of surfaces cannot hold a tet mesh.
   (void)error_of<UsageError>([&] { check_output_path(path("x.ply")); });
   (void)error_of<UsageError>([&] { check_output_path(path("x.vtu"), FileKind::surface); });

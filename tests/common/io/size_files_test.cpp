@@ -138,7 +138,7 @@ TEST_F(SizeFiles, MshWithAndWithoutTets) {
 }
 
 TEST_F(SizeFiles, OtherExtensions) {
-  const std::string known = "edge lengths are read from .vtu .msh .vtk .xdmf .node .ele .ply .vtp";
+  const std::string known = "edge lengths are read from .vtu .pvtu .msh .vtk .xdmf .node .ele .ply .vtp";
   EXPECT_EQ(message<UsageError>("a.txt"), "unknown extension \".txt\"; " + known);
   EXPECT_EQ(message<UsageError>("a"), "no extension; " + known);
   EXPECT_EQ(message<UsageError>("a.stl"), "files \".stl\" have no point fields; " + known);

@@ -7,6 +7,7 @@
 
 #include "tetwright/files.h"
 #include "tetwright/loop_times.h"
+#include "tetwright/partition.h"
 #include "tetwright/prepare.h"
 #include "tetwright/prepare_steps.h"
 #include "tetwright/progress.h"
@@ -34,6 +35,7 @@ struct CommandRun {
   NamedInputs* in_memory;
   PrepareReport report;
   ExitStatus status = ExitStatus::done;
+  std::optional<PartitionStatistics> parts;   ///< of the mesh, with --parts
   std::string error, stage;                   ///< message and stage of a run that failed
   std::optional<SurfaceDistances> distances;  ///< distances of the result; only with --report and a surface
 };

@@ -54,7 +54,11 @@ Prepared make_result(CommandRun& run) {
   options.keep.field = !line.outputs.distances.empty();
   // Measured: the text of the file is in memory in addition to the mesh.
   constexpr double text_bytes = 130;
-  if (!line.outputs.mesh.ends_with(".vtu")) options.limits.later_bytes_per_tet = text_bytes;
+  constexpr double parts_bytes = 180;  // measured: faces of all tets, their graph and a piece
+  if (line.outputs.parts > 0)
+    options.limits.later_bytes_per_tet = parts_bytes;
+  else if (!line.outputs.mesh.ends_with(".vtu"))
+    options.limits.later_bytes_per_tet = text_bytes;
   PrepareRun preparing(task_of(line.command), options, run.progress, run.report);
   Prepared result = carry_out(inputs_of(line, run.in_memory), preparing);
   if (!line.outputs.mesh.empty()) find_unwritten(line, result.mesh, run.report);

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/app/commands/output_paths.h"
 
+#include <sys/stat.h>
+
 #include <cctype>
 #include <filesystem>
+#include <map>
+#include <optional>
+#include <utility>
 
 #include "common/lower_case.h"
 #include "tetwright/error.h"
@@ -15,12 +20,32 @@ namespace tetwright {
 
 namespace {
 
-/// Whether both names refer to the same file, which need not exist.
-bool same_file(const std::string& a, const std::string& b) {
-  if (a.empty() || b.empty()) return false;
-  std::error_code not_there;
-  return real_path(a) == real_path(b) || std::filesystem::equivalent(a, b, not_there);
-}
+/// Names of files with the option of each. Finds a file by another name, too; it need not exist.
+class KnownFiles {
+ public:
+  void add(const std::string& file, const std::string& option) {
+    if (file.empty()) return;
+    by_path_.emplace(real_path(file), option);
+    if (const auto inode = inode_of(file)) by_inode_.emplace(*inode, option);
+  }
+  /// Option of the file that was added first; null: none.
+  const std::string* option_of(const std::string& file) const {
+    if (const auto known = by_path_.find(real_path(file)); known != by_path_.end()) return &known->second;
+    if (const auto inode = inode_of(file))
+      if (const auto known = by_inode_.find(*inode); known != by_inode_.end()) return &known->second;
+    return nullptr;
+  }
+
+ private:
+  using Inode = std::pair<dev_t, ino_t>;
+  static std::optional<Inode> inode_of(const std::string& file) {
+    struct stat status;
+    if (stat(file.c_str(), &status) != 0) return {};
+    return Inode{status.st_dev, status.st_ino};
+  }
+  std::map<std::string, std::string> by_path_;
+  std::map<Inode, std::string> by_inode_;  ///< of existing files
+};
 
 /// All files that the call reads.
 std::vector<std::string> files_read(const CommandLine& line) {
@@ -43,7 +68,8 @@ std::vector<Written> files_written(const CommandLine& line) {
   else if (line.command == Command::batch)
     files.push_back({"--results", results_file_of(line)});
   else if (line.command != Command::check)
-    for (const std::string& file : files_of_tet_mesh(line.outputs.mesh, line.outputs.format))
+    for (const std::string& file :
+         files_of_tet_mesh(line.outputs.mesh, line.outputs.format, line.outputs.parts))
       files.push_back({"-o", file});
   for (const Written& more : {Written{"--boundary", line.outputs.boundary},
                               {"--write-sdf", line.outputs.distances},
@@ -70,16 +96,19 @@ void check_files_are_different(const CommandLine& line, Which which) {
   // Reports of the run are last, so that each is compared with all other files.
   const std::size_t first =
       which == Which::all || line.command == Command::batch ? 0 : written.size() - report_count(line);
-  for (std::size_t i = first; i < written.size(); ++i) {
+  KnownFiles inputs, earlier;
+  for (const std::string& input : files_read(line)) inputs.add(input, "");
+  for (std::size_t i = 0; i < written.size(); ++i) {
     const auto& [option, file] = written[i];
-    std::string message = option;
-    message.append(" ").append(file);
-    for (const std::string& input : files_read(line))
-      if (same_file(input, file) && !(in_place && option == "-o"))
+    if (i >= first) {
+      std::string message = option;
+      message.append(" ").append(file);
+      if (inputs.option_of(file) && !(in_place && option == "-o"))
         throw UsageError(message + " is also an input; give it a name of its own");
-    for (std::size_t j = 0; j < i; ++j)
-      if (same_file(written[j].file, file))
-        throw UsageError(message + " is also the file of " + written[j].option + "; give each its own");
+      if (const std::string* other = earlier.option_of(file))
+        throw UsageError(message + " is also the file of " + *other + "; give each its own");
+    }
+    earlier.add(file, option);
   }
 }
 
@@ -137,7 +166,10 @@ void check_stats_path(const CommandLine& line) {
 }
 
 void check_tet_stream(const CommandLine& line) {
-  if (line.outputs.mesh == "-" && files_of_tet_mesh(line.outputs.mesh, line.outputs.format).size() > 1)
+  if (line.outputs.mesh != "-") return;
+  const std::vector<std::string> files =
+      files_of_tet_mesh(line.outputs.mesh, line.outputs.format, line.outputs.parts);
+  if (files != std::vector<std::string>{line.outputs.mesh})
     throw UsageError("--output-format " + line.outputs.format +
                      " is several files, which standard output is not; "
                      "give -o a name, or another format");
@@ -145,7 +177,7 @@ void check_tet_stream(const CommandLine& line) {
 
 void check_output_paths(const CommandLine& line) {
   if (line.command != Command::check)
-    check_output_path(line.outputs.mesh, FileKind::tet_mesh, line.outputs.format);
+    check_output_path(line.outputs.mesh, FileKind::tet_mesh, line.outputs.format, line.outputs.parts);
   if (!line.outputs.boundary.empty())
     check_output_path(line.outputs.boundary, FileKind::surface, line.outputs.boundary_format);
   check_sdf_path(line);

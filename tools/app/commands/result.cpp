@@ -2,10 +2,13 @@
 #include "tools/app/commands/result.h"
 
 #include <cstdio>
+#include <optional>
 
 #include "tetwright/files.h"
 #include "tetwright/io.h"
+#include "tetwright/partition.h"
 #include "tetwright/prepare_steps.h"
+#include "tetwright/tet_parts.h"
 #include "tools/app/commands/report_file.h"
 #include "tools/app/printed_report.h"
 #include "tools/report/stats_json.h"
@@ -21,9 +24,13 @@ TetMesh without_triangles(TetMesh mesh) {
   return mesh;
 }
 
-void write_mesh(const TetMesh& mesh, const Prepared& result, const OutputOptions& outputs,
-                OutputFiles& files) {
-  write_tet_mesh({mesh, result.midside ? &*result.midside : nullptr}, outputs.mesh, &files, outputs.format);
+void write_mesh(const TetMesh& mesh, const Prepared& result, const std::optional<TetPartition>& partition,
+                const OutputOptions& outputs, OutputFiles& files) {
+  const MeshToWrite written(mesh, result.midside ? &*result.midside : nullptr);
+  if (partition)
+    write_tet_mesh(written, *partition, outputs.mesh, &files, outputs.format);
+  else
+    write_tet_mesh(written, outputs.mesh, &files, outputs.format);
 }
 
 }  // namespace
@@ -35,10 +42,15 @@ void write_result(Prepared& result, CommandRun& run) {
   OutputFiles files(&run.progress);
   if (!line.outputs.distances.empty()) write_fields(*result.field, line.outputs.distances, &files);
   result.field.reset();  // frees memory for writing the mesh
+  std::optional<TetPartition> partition;
+  if (line.outputs.parts > 0) {
+    partition = partition_tets(result.mesh, line.outputs.parts);
+    run.parts = partition_statistics(result.mesh, *partition);
+  }
   if (line.outputs.no_boundary)
-    write_mesh(without_triangles(result.mesh), result, line.outputs, files);
+    write_mesh(without_triangles(result.mesh), result, partition, line.outputs, files);
   else
-    write_mesh(result.mesh, result, line.outputs, files);
+    write_mesh(result.mesh, result, partition, line.outputs, files);
   if (!line.outputs.boundary.empty())
     write_interfaces(result.mesh, line.outputs.boundary, &files, line.outputs.boundary_format);
   write_report(result.mesh, run, files);
@@ -56,7 +68,7 @@ void print_result(const CommandRun& run) {
   if (run.line.outputs.stats == "-")
     std::printf("%s\n", stats_json(run).c_str());
   else if (!run.line.console.quiet && run.line.outputs.mesh != "-" && run.line.outputs.boundary != "-")
-    print_report(run.line, run.report);
+    print_report(run.line, run.report, run.parts ? &*run.parts : nullptr);
   for (const std::string& line : shortfalls_of(run.report)) print_line(line);
 }
 

@@ -41,8 +41,9 @@ void note_missing(const std::string& file, const std::string& what, std::size_t 
 }
 
 void find_name_changes(const CommandLine& line, const TetMesh& mesh, PrepareReport& report) {
-  const NameChanges changes = written_name_changes(mesh, line.outputs.mesh, line.outputs.format);
-  const std::string extension = written_tet_format(line.outputs.mesh, line.outputs.format).extension;
+  const OutputOptions& out = line.outputs;
+  const NameChanges changes = written_name_changes(mesh, out.mesh, out.format, out.parts);
+  const std::string extension = written_tet_format(out.mesh, out.format, out.parts).extension;
   const auto note = [&](const char* what, const std::vector<NameChange>& changed) {
     note_changes(shown(line.outputs.mesh), extension, what, changed, report);
   };
@@ -112,7 +113,7 @@ void find_boundary_changes(const CommandLine& line, const TetMesh& mesh, Prepare
 }  // namespace
 
 void find_unwritten(const CommandLine& line, const TetMesh& mesh, PrepareReport& report) {
-  const TetFormatInfo format = written_tet_format(line.outputs.mesh, line.outputs.format);
+  const TetFormatInfo format = written_tet_format(line.outputs.mesh, line.outputs.format, line.outputs.parts);
   const std::string no_place = "; " + format.extension + " cannot hold them";
   const auto note = [&](const std::string& what, std::size_t count, const std::string& why) {
     note_missing(shown(line.outputs.mesh), what, count, why, report);

@@ -188,13 +188,13 @@ class TetMesh:
         return self._core.shortfall
 
     def write(self, path: str | os.PathLike, *, output_format: str = "", boundary: str | os.PathLike = "",
-              no_boundary: bool = False) -> None:
+              no_boundary: bool = False, parts: int = 0) -> None:
         """Writes the mesh as the program does, completely or not at all. The extension or `output_format` determines
         the format; `boundary` is a file for the boundary and interfaces as a surface; `no_boundary` leaves triangles
-        out of the mesh. With order=2 tets have ten nodes, which the format must support. Data that the format cannot
-        hold or changes are listed in `notes`."""
+        out of the mesh; `parts` divides it into so many parts for parallel solvers. With order=2 tets have ten nodes,
+        which the format must support. Data that the format cannot hold or changes are listed in `notes`."""
         self._core.write(file_name(path, "path"), plain_text(output_format, "output_format"),
-                         file_name(boundary, "boundary"), no_boundary)
+                         file_name(boundary, "boundary"), no_boundary, parts)
 
     def to_meshio(self):
         """Converts to a meshio.Mesh: tets (ten-node ones with order=2) with the cell data `material`, and triangles

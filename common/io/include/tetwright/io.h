@@ -15,6 +15,7 @@
 #include "tetwright/files.h"
 #include "tetwright/label_source.h"
 #include "tetwright/label_volume.h"
+#include "tetwright/partition.h"
 #include "tetwright/surface_mesh.h"
 #include "tetwright/tet_mesh.h"
 
@@ -244,6 +245,7 @@ struct TetFormatInfo {
   bool patch_names;       ///< names of these groups
   bool fields;            ///< fields of points and tets
   bool second_order;      ///< tets of ten nodes
+  bool parts;             ///< meshes in parts, see TetPartition
 };
 
 /// Tet mesh formats that can be written. The first one with an extension is its default.
@@ -251,12 +253,16 @@ std::vector<TetFormatInfo> written_tet_formats();
 
 /// Format in which a tet mesh is written to `path`: the one called `name`, or the extension's default if
 /// `name` is empty.
+/// \param parts above 0: the mesh is divided into so many parts. Then it is the extension's first format that
+///   can hold parts
 /// \throws UsageError if there is none
-TetFormatInfo written_tet_format(const std::string& path, const std::string& name = {});
+TetFormatInfo written_tet_format(const std::string& path, const std::string& name = {}, PartNumber parts = 0);
 
 /// Tags, numbers and names of the mesh that this format stores in another form. Does not list contents that
 /// it cannot store at all.
-NameChanges written_name_changes(const TetMesh& mesh, const std::string& path, const std::string& name = {});
+/// \param parts as in written_tet_format()
+NameChanges written_name_changes(const TetMesh& mesh, const std::string& path, const std::string& name = {},
+                                 PartNumber parts = 0);
 
 /// Format that write_surface() and write_interfaces() choose.
 /// \throws UsageError if there is none
@@ -349,6 +355,11 @@ void write_surface(const TriangleMesh& mesh, const std::string& path, OutputFile
                    const std::string& format = {});
 void write_tet_mesh(const MeshToWrite& mesh, const std::string& path, OutputFiles* files = nullptr,
                     const std::string& format = {});
+/// Writes a mesh in parts, each with the tets of other parts that share a point with one of its own, as
+/// parallel solvers read them.
+/// \throws UsageError also if the format cannot hold parts
+void write_tet_mesh(const MeshToWrite& mesh, const TetPartition& partition, const std::string& path,
+                    OutputFiles* files = nullptr, const std::string& format = {});
 /// Writes the boundary and the interfaces of the mesh as a surface with the names of its groups.
 void write_interfaces(const TetMesh& mesh, const std::string& path, OutputFiles* files = nullptr,
                       const std::string& format = {});
@@ -356,16 +367,19 @@ void write_label_volume(const LabelVolume& volume, const std::string& path, Outp
                         const std::string& format = {});
 
 /// All files that write_tet_mesh() writes for a path.
-std::vector<std::string> files_of_tet_mesh(const std::string& path, const std::string& format = {});
+/// \param parts number of parts; 0: the mesh is not divided
+std::vector<std::string> files_of_tet_mesh(const std::string& path, const std::string& format = {},
+                                           PartNumber parts = 0);
 
-/// The file at `path` and the files read with it because of its name: the other files of TetGen and XDMF
-/// meshes, and the .img file of a .hdr file. They need not exist.
+/// The file at `path` and the files read with it because of its name or content: the other files of TetGen
+/// and XDMF meshes, the pieces of a .pvtu file, and the .img file of a .hdr file. They need not exist.
 std::vector<std::string> files_of_input(const std::string& path);
 
 /// Checks an output path. Call it before any work.
 /// \throws UsageError if the extension or the format is not of `kind`
 /// \throws OutputError if the folder is missing or not writable, or anything at `path` is not a regular file
+/// \param parts as in files_of_tet_mesh()
 void check_output_path(const std::string& path, FileKind kind = FileKind::tet_mesh,
-                       const std::string& format = {});
+                       const std::string& format = {}, PartNumber parts = 0);
 
 }  // namespace tetwright
