@@ -62,7 +62,7 @@ struct Hdf5Writer::File {
 
   void add_attribute(const std::string& group, const std::string& name, hid_t stored, hid_t space,
                      hid_t native, const void* values) {
-    const Handle attribute(H5Acreate_by_name(handle.id(), group.c_str(), name.c_str(), stored, space,
+    const Hdf5Handle attribute(H5Acreate_by_name(handle.id(), group.c_str(), name.c_str(), stored, space,
                                              H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                            H5Aclose);
     if (!attribute.good() || H5Awrite(attribute.id(), native, values) < 0)
@@ -93,13 +93,13 @@ void Hdf5Writer::add(const std::string& name, std::span<const std::uint8_t> valu
 }
 
 void Hdf5Writer::add_group(const std::string& name) {
-  const Handle group(H5Gcreate2(file_->handle.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+  const Hdf5Handle group(H5Gcreate2(file_->handle.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
                      H5Gclose);
   if (!group.good()) throw OutputError("the HDF5 library cannot add the group '" + name + "'");
 }
 
 void Hdf5Writer::add_attribute(const std::string& group, const std::string& name, const std::string& text) {
-  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
+  const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
   H5Tset_size(type.id(), text.size());
   H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
   file_->add_attribute(group, name, type.id(), space.id(), type.id(), text.data());
@@ -107,7 +107,7 @@ void Hdf5Writer::add_attribute(const std::string& group, const std::string& name
 void Hdf5Writer::add_attribute(const std::string& group, const std::string& name,
                                std::span<const std::int64_t> values) {
   const hsize_t size = values.size();
-  const Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
+  const Hdf5Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
   file_->add_attribute(group, name, H5T_STD_I64LE, space.id(), H5T_NATIVE_INT64, values.data());
 }
 
