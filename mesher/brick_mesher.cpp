@@ -296,7 +296,7 @@ std::vector<std::size_t> unconfirmed_bricks(const std::vector<BrickMesh>& bricks
   return unconfirmed;
 }
 
-CutMesh BrickMesher::mesh_all(int side, MesherReport& report, Progress* progress) const {
+BrickedMesh BrickMesher::mesh_all(int side, MesherReport& report, Progress* progress) const {
   std::vector<BrickMesh> bricks;
   const auto again = [&](std::size_t done, std::size_t of) {
     if (progress) progress->update(static_cast<double>(done) / static_cast<double>(of));
@@ -306,17 +306,24 @@ CutMesh BrickMesher::mesh_all(int side, MesherReport& report, Progress* progress
     bricks.push_back(mesh(box, usual_halo(), progress));
     again(bricks.size(), boxes.size());
   }
-  report.bricks = bricks.size();
+  BrickedMesh made;
+  made.bricks = bricks.size();
+  const int whole = *std::max_element(frame().cells.begin(), frame().cells.end());
   for (std::vector<std::size_t> doubtful; !(doubtful = unconfirmed_bricks(bricks)).empty();) {
-    report.repeated_bricks += doubtful.size();
-    for (const std::size_t b : doubtful) bricks[b] = mesh(bricks[b].brick, 2 * bricks[b].halo, progress);
+    made.repeated += doubtful.size();
+    for (const std::size_t b : doubtful) {
+      // Bricks that were meshed with all of the volume agree.
+      TETWRIGHT_CHECK(bricks[b].halo < whole);
+      bricks[b] = mesh(bricks[b].brick, std::min(2 * bricks[b].halo, whole), progress);
+    }
   }
   for (const BrickMesh& brick : bricks) {
     report.lattice_tets += brick.lattice_tets;
     report.isolated_vertices += brick.isolated_vertices;
     report.cells += brick.leaves;
   }
-  return joined(std::move(bricks));
+  made.mesh = joined(std::move(bricks));
+  return made;
 }
 
 }  // namespace tetwright

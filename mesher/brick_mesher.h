@@ -27,6 +27,13 @@ struct BrickMesh {
   std::size_t leaves = 0, lattice_tets = 0, isolated_vertices = 0;  ///< of the brick
 };
 
+/// The mesh of a volume from its bricks.
+struct BrickedMesh {
+  CutMesh mesh;
+  std::size_t bricks = 0;
+  std::size_t repeated = 0;  ///< times that a brick was meshed again, with a larger halo
+};
+
 /// Meshes a segmented volume brick by brick: the bricks' tets together are those of the volume meshed whole,
 /// with the same coordinates to the last bit, for bricks of any size and position.
 ///
@@ -59,9 +66,9 @@ class BrickMesher {
   /// Meshes the whole volume by bricks, one after another. The mesh is the same for any size of bricks,
   /// including the order of points and tets.
   /// \param side of bricks, finest cells: a power of two, at least a root cell
-  /// \param report receives the counts of bricks and lattice tets
+  /// \param report receives the numbers of leaves, lattice tets and isolated vertices
   /// \throws Interrupted
-  CutMesh mesh_all(int side, MesherReport& report, Progress* progress) const;
+  BrickedMesh mesh_all(int side, MesherReport& report, Progress* progress) const;
 
  private:
   MesherOptions options_;

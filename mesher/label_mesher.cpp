@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <utility>
 
-#include "mesher/brick_mesher.h"
 #include "mesher/features/border_creases.h"
 #include "mesher/field_mesher.h"
 #include "mesher/labels/label_field.h"
@@ -86,34 +84,6 @@ void validate_materials_left(const LabelInput& labels, const std::vector<std::ui
               "larger --min-voxels");
 }
 
-namespace {
-
-DenseMesh mesh_by_bricks(const LabelInput& labels, VolumeField volume, const MesherOptions& options,
-                         MesherReport& report, Stages& stages) {
-  if (options.uniform)
-    throw UsageError("bricks consist of the cells of an octree; leave out --uniform, or --bricks");
-  if (options.brick_cells < min_brick_cells ||
-      !std::has_single_bit(unsigned(options.brick_cells)))
-    throw UsageError("bricks must have a power of two of cells along a side, at least " +
-                     std::to_string(min_brick_cells) + ", not " +
-                     std::to_string(options.brick_cells));
-  stages.begin("bricks");
-  const BrickMesher mesher(std::move(volume), options, report, stages.progress());
-  CutMesh cut = mesher.mesh_all(options.brick_cells << report.refinement, report, stages.progress());
-  validate_materials_left(labels, regions_there(*mesher.field(), cut.regions));
-  report.seconds_move = stages.seconds();
-  report.loops_move = stages.loops();
-  DenseMesh result;
-  stages.begin("cutting");
-  set_mesh(std::move(cut), mesher.field(), result);
-  report.seconds_cut = stages.seconds();
-  report.loops_cut = stages.loops();
-  result.report = std::move(report);
-  return result;
-}
-
-}  // namespace
-
 DenseMesh mesh_labels(const LabelInput& labels, const MesherOptions& options, Progress* progress) {
   MesherReport report;
   Stages stages(progress);
@@ -122,7 +92,6 @@ DenseMesh mesh_labels(const LabelInput& labels, const MesherOptions& options, Pr
   validate_estimate(report.estimate);
   report.seconds_sdf = stages.seconds();
   report.loops_sdf = stages.loops();
-  if (options.brick_cells > 0) return mesh_by_bricks(labels, std::move(volume), options, report, stages);
 
   stages.begin("octree");
   std::vector<MortonKey> interface_voxels = volume.field->interface_voxels();

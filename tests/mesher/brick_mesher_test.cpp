@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "common/random.h"
+#include "mesher/field_mesher.h"
 #include "tests/mesher/checked_labels.h"
 #include "tests/mesher/label_volumes.h"
-#include "tetwright/error.h"
 #include "tetwright/resources.h"
 
 namespace tetwright::brick_mesher_test {
@@ -194,27 +194,22 @@ TEST(BrickMesher, SameBytesForAnySideOfBricks) {
     return z < 3 ? 4 : length(x - 40, y - 30, 0) < 2 ? 5 : 0;
   });
   const DenseMesh whole = mesh_labels(labels, cells_of(1), nullptr);
+  MesherReport report;
+  const BrickMesher mesher(make_volume_field(labels, cells_of(1), report, nullptr), cells_of(1), report,
+                           nullptr);
   for (const int side : {16, 32, 64}) {
-    MesherOptions options = cells_of(1);
-    options.brick_cells = side;
-    const DenseMesh made = mesh_labels(labels, options, nullptr);
-    EXPECT_TRUE(made.mesh.points == whole.mesh.points) << side;
-    EXPECT_TRUE(made.mesh.tets == whole.mesh.tets) << side;
-    EXPECT_TRUE(made.mesh.materials == whole.mesh.materials) << side;
-    EXPECT_TRUE(made.mesh.interfaces == whole.mesh.interfaces) << side;
-    EXPECT_EQ(made.report.cells, whole.report.cells);
-    EXPECT_EQ(made.report.lattice_tets, whole.report.lattice_tets);
-    EXPECT_EQ(made.report.isolated_vertices, whole.report.isolated_vertices);
-    EXPECT_GT(made.report.bricks, side < 64 ? 1u : 0u);
-  }
-}
-
-TEST(BrickMesher, RefusesSidesThatAreNoPowersOfTwo) {
-  const LabelInput labels = grains({20, 20, 20}, 4, 1);
-  for (const int side : {1, 8, 48}) {
-    MesherOptions options = cells_of(1);
-    options.brick_cells = side;
-    EXPECT_THROW(mesh_labels(labels, options, nullptr), UsageError) << side;
+    MesherReport counts;
+    BrickedMesh made = mesher.mesh_all(side << report.refinement, counts, nullptr);
+    EXPECT_GT(made.bricks, side < 64 ? 1U : 0U);
+    EXPECT_EQ(counts.cells, whole.report.cells);
+    EXPECT_EQ(counts.lattice_tets, whole.report.lattice_tets);
+    EXPECT_EQ(counts.isolated_vertices, whole.report.isolated_vertices);
+    DenseMesh dense;
+    set_mesh(std::move(made.mesh), mesher.field(), dense);
+    EXPECT_TRUE(dense.mesh.points == whole.mesh.points) << side;
+    EXPECT_TRUE(dense.mesh.tets == whole.mesh.tets) << side;
+    EXPECT_TRUE(dense.mesh.materials == whole.mesh.materials) << side;
+    EXPECT_TRUE(dense.mesh.interfaces == whole.mesh.interfaces) << side;
   }
 }
 

@@ -185,14 +185,6 @@ void add_meshing(CLI::App& app, CommandLine& c, const char* default_resolution) 
   add_length(app, "--min-thickness", c.options.cells.min_thickness,
              "Leave out walls and bridges of a surface that are thinner, input units or percent of the "
              "diagonal");
-  add_parsed<std::optional<int>>(
-      app, "--bricks", c.options.cells.brick_cells, "CELLS|off",
-      [](const std::string& text) -> std::optional<int> {
-        if (text == "off") return std::nullopt;
-        return static_cast<int>(parse_whole_number("--bricks", text, min_brick_cells, max_brick_cells));
-      },
-      "Mesh a segmented volume by bricks of so many cells along a side, a power of two: the same mesh in less "
-      "memory");
   add_bodies(app, c);
   add_feature_angle(app, c.options.feature_angle);
   app.add_flag("--keep-outside", c.options.cells.keep_outside,

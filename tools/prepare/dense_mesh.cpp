@@ -26,7 +26,6 @@ MesherOptions common_options(const PrepareRun& run) {
   options.uniform = cells.uniform;
   options.adaptivity = cells.adaptivity;
   options.keep_outside = cells.keep_outside;
-  options.brick_cells = cells.brick_cells.value_or(0);
   options.feature_angle = run.options.feature_angle;
   if (cells.resolution) options.resolution = *cells.resolution;
   // Measured: the simplifier's tets with all data that belong to them.

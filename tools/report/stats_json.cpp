@@ -356,7 +356,6 @@ void add_mesher_json(const MesherReport& m, nlohmann::json& dense) {
   dense["cells"] = m.cells;
   dense["lattice_tets"] = m.lattice_tets;
   dense["refinement"] = m.refinement;
-  if (m.bricks > 0) dense["bricks"] = {{"count", m.bricks}, {"repeated", m.repeated_bricks}};
   dense["specks"] = m.isolated_vertices;
   dense["thin_parts"] = nlohmann::json::array();
   for (const ThinPartReport& t : m.thin_parts)

@@ -63,8 +63,8 @@ struct Hdf5Writer::File {
   void add_attribute(const std::string& group, const std::string& name, hid_t stored, hid_t space,
                      hid_t native, const void* values) {
     const Hdf5Handle attribute(H5Acreate_by_name(handle.id(), group.c_str(), name.c_str(), stored, space,
-                                             H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                           H5Aclose);
+                                                 H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                               H5Aclose);
     if (!attribute.good() || H5Awrite(attribute.id(), native, values) < 0)
       throw OutputError("the HDF5 library cannot add the attribute '" + name + "'");
   }
@@ -94,7 +94,7 @@ void Hdf5Writer::add(const std::string& name, std::span<const std::uint8_t> valu
 
 void Hdf5Writer::add_group(const std::string& name) {
   const Hdf5Handle group(H5Gcreate2(file_->handle.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                     H5Gclose);
+                         H5Gclose);
   if (!group.good()) throw OutputError("the HDF5 library cannot add the group '" + name + "'");
 }
 

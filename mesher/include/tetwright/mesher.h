@@ -26,9 +26,6 @@ struct RefinementRegion {
   int halvings;
 };
 
-/// Range of MesherOptions::brick_cells.
-inline constexpr int min_brick_cells = 16, max_brick_cells = 4096;
-
 struct MesherOptions {
   int resolution = 128;   ///< finest cells along the longest side, 4 to 4096; ignored if voxel_size is given
   double voxel_size = 0;  ///< edge of a finest cell, input units; 0: determined by the resolution
@@ -52,10 +49,6 @@ struct MesherOptions {
   std::function<double(const Vec3&)> max_cell;
   /// Determines which edges of the surfaces stay sharp.
   FeatureAngle feature_angle;
-  /// Side of the bricks by which a segmented volume is meshed, finest cells before halving: a power of two,
-  /// 16 or more. The mesh is the same for any value; the memory for everything between the distances and the
-  /// mesh is that of one brick. 0: one brick. Not allowed with `uniform`.
-  int brick_cells = 0;
   /// Also mesh the outside as the material `outside` with tag 0, up to a box; for labels, up to the border of
   /// the volume.
   bool keep_outside = false;
@@ -139,8 +132,6 @@ struct MesherReport {
   std::size_t cells = 0;  ///< leaves of the octree
   std::size_t lattice_tets = 0;       ///< before cutting, without tets far outside
   std::size_t isolated_vertices = 0;  ///< components and cavities of one lattice point, omitted
-  std::size_t bricks = 0;             ///< of MesherOptions::brick_cells; 0: meshed whole
-  std::size_t repeated_bricks = 0;    ///< times that a brick was meshed again, with more around it
   std::vector<ThinPartReport> thin_parts;
   ThickenedWallsReport thickened;
   StripReport strips;

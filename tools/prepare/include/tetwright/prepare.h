@@ -137,9 +137,6 @@ struct CellOptions {
   std::optional<int> max_refinement;
   std::optional<Length> min_gap;        ///< narrower gaps of a surface are closed
   std::optional<Length> min_thickness;  ///< thinner walls of a surface are left out
-  /// Side of the bricks by which a segmented volume is meshed: MesherOptions::brick_cells. std::nullopt: one
-  /// brick. The mesh is the same.
-  std::optional<int> brick_cells;
   bool keep_outside = false;            ///< true: mesh a box around the bodies as material `outside`, tag 0
 };
 
