@@ -12,7 +12,7 @@
 
 namespace tetwright {
 
-/// What determines the mesh of a segmented volume.
+/// Field and cells that determine the mesh of a segmented volume.
 struct VolumeField {
   std::shared_ptr<const MaterialField> field;  ///< unrefined
   RefinementRegions finer;                     ///< cells that are halved because labels are thin
