@@ -27,7 +27,7 @@ struct Octree {
   CellBox window;                     ///< the part of it that leaves fill, in finest cells
   int root_level;                     ///< maximum level of a leaf
   std::vector<std::uint64_t> packed;  ///< key << 5 | level, ascending
-  /// Those of `packed` that cells beyond the window might split, ascending: all other leaves of the window
+  /// Leaves of `packed` that cells beyond the window might split, ascending: all others in the window
   /// are leaves of the whole box's octree.
   std::vector<std::uint64_t> uncertain;
 
