@@ -118,7 +118,7 @@ TEST(ImportCleanup, MeshesOfOtherProgramsAreMadeCoherent) {
   EXPECT_EQ(counts.size(), 2u);
   EXPECT_EQ(run("check " + (f / "out.vtu")).status, 0);
   expect_refused("simplify " + (f / "m.ele") + " -o " + (f / "out.ply") + " --target-tets 10", 2,
-                 {"\".ply\" for a tet mesh", ".vtu .msh .mesh"});
+                 {"\".ply\" for a tet mesh", ".vtu .pvtu .vtkhdf .msh .mesh"});
   // If all tets have a repeated vertex, no tet is left.
   put(f / "flat.node", "4 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n");
   put(f / "flat.ele", "2 4\n0 0 1 2 2\n1 3 1 3 2\n");
