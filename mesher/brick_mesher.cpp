@@ -179,6 +179,10 @@ CutMesh joined(std::vector<BrickMesh> bricks) {
     for (j = i; j < shared.size() && shared[j].bits == shared[i].bits; ++j)
       first[shared[j].brick].emplace_back(shared[j].point, i);
   CutMesh all;
+  std::size_t points = 0;
+  for (const BrickMesh& brick : bricks) points += brick.mesh.points.size();
+  all.points.reserve(points);
+  all.on_interface.reserve(points);
   all.tets.reserve(tets);
   all.regions.reserve(tets);
   std::vector<Index> number_of_first(shared.size(), no_index);
@@ -224,6 +228,7 @@ int BrickMesher::usual_halo() const {
 }
 
 BrickMesh BrickMesher::mesh(const CellBox& brick, int halo, Progress* progress) const {
+  TETWRIGHT_CHECK(halo >= root());
   const MaterialField& field = *field_;
   const CellBox window = enlarged(brick, halo, frame());
   std::optional<Octree> octree;
@@ -262,7 +267,9 @@ BrickMesh BrickMesher::mesh(const CellBox& brick, int halo, Progress* progress) 
   for (const Index p : lattice.stars.points())
     made.isolated_vertices += lattice.first_region[p] != nearest[p].region && recorder.is_inside(p);
   read_star_values(lattice, field);
-  snap_vertices(lattice, field, progress);
+  // Its own progress would hide that of the bricks.
+  snap_vertices(lattice, field, nullptr);
+  if (progress) progress->throw_if_stopped();
   made.seam = recorder.finish();
   lattice.stars.forget_tets();
   drop_distant_tets(lattice);
@@ -284,7 +291,8 @@ std::vector<std::size_t> unconfirmed_bricks(const std::vector<BrickMesh>& bricks
     for (const SeamPoint& p : bricks[b].seam.needed) {
       const auto offer = std::lower_bound(offers.begin(), offers.end(), p.key,
                                           [](const Offer& o, MortonKey key) { return o.point.key < key; });
-      if (offer != offers.end() && offer->point == p) continue;
+      const bool offered = offer != offers.end() && offer->point.key == p.key;
+      if (offered ? offer->point == p : p.history == SeamPoint::not_near) continue;
       doubtful[b] = 1;
       // The brick of the point may not even know that others read it.
       for (std::size_t other = 0; other < bricks.size(); ++other)
@@ -297,6 +305,7 @@ std::vector<std::size_t> unconfirmed_bricks(const std::vector<BrickMesh>& bricks
 }
 
 BrickedMesh BrickMesher::mesh_all(int side, MesherReport& report, Progress* progress) const {
+  TETWRIGHT_CHECK(side >= root() && std::has_single_bit(static_cast<unsigned>(side)));
   std::vector<BrickMesh> bricks;
   const auto again = [&](std::size_t done, std::size_t of) {
     if (progress) progress->update(static_cast<double>(done) / static_cast<double>(of));
@@ -310,18 +319,20 @@ BrickedMesh BrickMesher::mesh_all(int side, MesherReport& report, Progress* prog
   made.bricks = bricks.size();
   const int whole = *std::max_element(frame().cells.begin(), frame().cells.end());
   for (std::vector<std::size_t> doubtful; !(doubtful = unconfirmed_bricks(bricks)).empty();) {
-    made.repeated += doubtful.size();
+    const std::size_t before = made.repeated;
     for (const std::size_t b : doubtful) {
-      // Bricks that were meshed with all of the volume agree.
-      TETWRIGHT_CHECK(bricks[b].halo < whole);
+      if (bricks[b].halo >= whole) continue;  // only its neighbours can be wrong
       bricks[b] = mesh(bricks[b].brick, std::min(2 * bricks[b].halo, whole), progress);
+      ++made.repeated;
     }
+    TETWRIGHT_CHECK(made.repeated > before);
   }
   for (const BrickMesh& brick : bricks) {
     report.lattice_tets += brick.lattice_tets;
     report.isolated_vertices += brick.isolated_vertices;
     report.cells += brick.leaves;
   }
+  for (BrickMesh& brick : bricks) brick.seam = {};
   made.mesh = joined(std::move(bricks));
   return made;
 }

@@ -57,7 +57,7 @@ class BrickMesher {
   int root() const { return 1 << frame().root_level; }
   /// Meshes a brick.
   /// \param brick finest cells, whole root cells; the last ones along an axis end at frame().cells
-  /// \param halo finest cells, whole root cells
+  /// \param halo finest cells, one root cell or more
   /// \param progress may be null
   /// \throws Interrupted
   BrickMesh mesh(const CellBox& brick, int halo, Progress* progress) const;

@@ -234,6 +234,12 @@ class Mover {
                                         if (const std::optional<Candidate> c = as_candidate(near[i], sampler))
                                           out.push_back(*c);
                                     });
+    // The order of moves depends on priorities.
+    if (!lattice_.histories.empty())
+      for (const Candidate& c : candidates_) {
+        std::uint64_t& history = lattice_.histories[lattice_.stars.slot(c.point)];
+        history = mixed_bits(history ^ static_cast<std::uint64_t>(c.priority()));
+      }
     by_rank_.resize(candidates_.size());
     std::iota(by_rank_.begin(), by_rank_.end(), Index{0});
     parallel_sort(by_rank_, [&](Index a, Index b) {

@@ -26,7 +26,7 @@ void flag_points(const TetList& tets, Takes&& takes, Flags& flags) {
 SeamRecorder::SeamRecorder(LabelledLattice& lattice, const CellBox& brick) : lattice_(lattice) {
   inside_.resize(lattice.positions.size());
   const std::vector<Index>& near = lattice.stars.points();
-  keys_.resize(near.size());
+  keys_.resize(inside_.size());
   lattice.histories.resize(near.size());
   for (std::size_t p = 0; p < inside_.size(); ++p) {
     std::array<int, 3> cell;
@@ -34,13 +34,12 @@ SeamRecorder::SeamRecorder(LabelledLattice& lattice, const CellBox& brick) : lat
     for (int a = 0; a < 3; ++a)
       cell[a] = std::min(static_cast<int>(lattice.positions[p][a]), lattice.box[a] - 1);
     inside_[p] = brick.contains(cell);
-  }
-  for (std::size_t s = 0; s < near.size(); ++s) {
-    const Vec3 half_cells = 2 * lattice.positions[near[s]];
-    keys_[s] = morton_encode(static_cast<int>(half_cells[0]), static_cast<int>(half_cells[1]),
+    const Vec3 half_cells = 2 * lattice.positions[p];
+    keys_[p] = morton_encode(static_cast<int>(half_cells[0]), static_cast<int>(half_cells[1]),
                              static_cast<int>(half_cells[2]));
-    lattice.histories[s] = mixed_bits(1 + std::uint64_t{lattice.first_region[near[s]]});
   }
+  for (std::size_t s = 0; s < near.size(); ++s)
+    lattice.histories[s] = mixed_bits(1 + std::uint64_t{lattice.first_region[near[s]]});
 }
 
 Seam SeamRecorder::finish() {
@@ -52,25 +51,39 @@ Seam SeamRecorder::finish() {
   const auto with = [&](const auto& test) {
     return [&, test](std::size_t i) { return std::any_of(tets[i].begin(), tets[i].end(), test); };
   };
+  const auto flagged = [](const Flags& flags) { return [&flags](Index v) { return flags[v] != 0; }; };
+  const auto spread = [&](Flags& flags) {
+    const Flags before = flags;
+    flag_points(tets, with(flagged(before)), flags);
+  };
   // Two edges from near points, the second one from a near point, too.
-  Flags read(inside_.size(), 0), read_by_others(inside_.size(), 0);
+  Flags read(inside_.size(), 0);
   flag_points(tets, with([&](Index v) { return own(v) && near(v); }), read);
   const Flags once = read;
   flag_points(tets, with([&](Index v) { return once[v] && near(v); }), read);
+  // The points of the brick's tets, and those around them.
+  Flags around(inside_.size(), 0);
   flag_points(
-      tets, [&](std::size_t i) { return lattice_.owns(i); }, read);
-  // Two edges from any point, which includes all that others need.
+      tets, [&](std::size_t i) { return lattice_.owns(i); }, around);
+  spread(around);
+  // A tet without a point in the brick has one that shares a tet with such a point: three edges include all
+  // that other bricks need.
+  Flags read_by_others(inside_.size(), 0);
   flag_points(tets, with(foreign), read_by_others);
-  const Flags once_by_others = read_by_others;
-  flag_points(tets, with([&](Index v) { return once_by_others[v] != 0; }), read_by_others);
+  spread(read_by_others);
+  spread(read_by_others);
 
   Seam seam;
-  const std::vector<Index>& points = stars.points();
-  for (std::size_t s = 0; s < points.size(); ++s) {
-    const Index p = points[s];
-    if (own(p) ? read_by_others[p] : read[p])
-      (own(p) ? seam.offered : seam.needed).push_back({keys_[s], lattice_.histories[s]});
-  }
+  const auto add = [&](Index p, std::uint64_t history) {
+    const MortonKey key = keys_[p];
+    if (own(p)) {
+      if (history != SeamPoint::not_near && read_by_others[p]) seam.offered.push_back({key, history});
+    } else if (read[p] || around[p]) {
+      seam.needed.push_back({key, history});
+    }
+  };
+  for (Index p = 0; p < inside_.size(); ++p)
+    add(p, near(p) ? lattice_.histories[stars.slot(p)] : SeamPoint::not_near);
   parallel_sort(seam.offered);
   parallel_sort(seam.needed);
   lattice_.histories = {};
