@@ -209,11 +209,23 @@ TEST(BrickMesher, SameBytesForAnySideOfBricks) {
   }
 }
 
-TEST(BrickMesher, Noise) {
-  Random random(13);
-  const LabelInput labels =
-      make_labels({4, 4, 4}, [&](int, int, int) { return static_cast<MaterialTag>(random.below(3)); });
-  expect_same_tets(labels, cells_of(1), {1}, 8);
+TEST(BrickMesher, BricksOfDifferentHistoriesAreNotConfirmed) {
+  std::vector<BrickMesh> bricks(3);
+  for (int b = 0; b < 3; ++b) bricks[static_cast<std::size_t>(b)].brick = {{8 * b, 0, 0}, {8 * b + 8, 8, 8}};
+  const MortonKey in_second = morton_encode(20, 4, 4), at_border = morton_encode(16, 4, 4);
+  bricks[1].seam.offered = {{in_second, 7}};
+  const auto unconfirmed = [&](std::vector<SeamPoint> needed) {
+    bricks[0].seam.needed = std::move(needed);
+    return unconfirmed_bricks(bricks);
+  };
+  using Numbers = std::vector<std::size_t>;
+  EXPECT_EQ(unconfirmed({}), Numbers());
+  EXPECT_EQ(unconfirmed({{in_second, 7}}), Numbers());
+  EXPECT_EQ(unconfirmed({{in_second, 8}}), (Numbers{0, 1}));
+  // A point that is near an interface in one of the bricks only.
+  EXPECT_EQ(unconfirmed({{in_second, SeamPoint::not_near}}), (Numbers{0, 1}));
+  EXPECT_EQ(unconfirmed({{at_border, 7}}), (Numbers{0, 1}));
+  EXPECT_EQ(unconfirmed({{at_border, SeamPoint::not_near}}), Numbers());
 }
 
 }  // namespace
