@@ -29,7 +29,7 @@ class ChunkCache {
   explicit ChunkCache(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
   /// Returns the chunk, and calls `load` if it is not kept. Rethrows an exception of `load`, and keeps
-  /// nothing then.
+  /// nothing then, nor if memory runs out (std::bad_alloc); other threads that wait for the chunk load it.
   Chunk get(std::uint64_t key, const std::function<ByteBuffer()>& load);
 
  private:
