@@ -64,6 +64,7 @@ std::int64_t checked_chunk_bytes(std::span<const std::int64_t> size, std::size_t
 class ChunkedSource : public LabelSource {
  public:
   VoxelIndex block() const override { return layout_.size; }
+  std::size_t decoding_bytes() const override { return layout_.bytes; }
 
  protected:
   /// \param cache_bytes decoded chunks that are kept, bytes

@@ -183,6 +183,10 @@ TEST(Zarr, CodecsOfVersion3) {
       little_bytes + "]");
 }
 
+TEST(Zarr, ThreadsDecodeAChunkAtATime) {
+  EXPECT_EQ(open({{"a/.zarray", second("<u2")}})->decoding_bytes(), 4u * 5 * 6 * 2);
+}
+
 TEST(Zarr, KeysOfVersion2InVersion3) {
   MemoryFiles files = files_of<std::uint8_t>(volume(), {});
   files["a/zarr.json"] =
