@@ -95,17 +95,29 @@ LabelVolume read_all(const LabelSource& source, const std::string& file) {
                      "its " + std::to_string(grid.size[0]) + " x " + std::to_string(grid.size[1]) + " x " +
                          std::to_string(grid.size[2]) + " voxels are more than " +
                          std::to_string(max_volume_voxels) + "; crop the volume or make it coarser");
-  require_memory(static_cast<double>(grid.voxels()) * sizeof(MaterialTag), "the labels of " + file,
-                 "crop the volume or make it coarser");
-  LabelVolume volume;
-  static_cast<LabelGrid&>(volume) = grid;
-  volume.labels.resize(grid.voxels());
+  const double label_bytes = static_cast<double>(grid.voxels()) * sizeof(MaterialTag);
+  require_memory(label_bytes, "the labels of " + file, "crop the volume or make it coarser");
   const std::array<std::int64_t, 3> box = joined_blocks(source.block(), grid.size);
   std::array<std::size_t, 3> boxes;
   for (std::size_t k = 0; k < 3; ++k)
     boxes[k] = static_cast<std::size_t>((grid.size[k] + box[k] - 1) / box[k]);
   // Boxes that contain whole slices are contiguous in the result.
   const bool slices = boxes[0] == 1 && boxes[1] == 1;
+  auto worker_bytes = static_cast<double>(source.decoding_bytes());
+  if (!slices) {
+    double box_bytes = sizeof(MaterialTag);
+    for (std::size_t k = 0; k < 3; ++k)
+      box_bytes *= static_cast<double>(std::min<std::int64_t>(box[k], grid.size[k]));
+    worker_bytes += box_bytes;
+  }
+  const std::size_t workers = std::min<std::size_t>(thread_count(), boxes[0] * boxes[1] * boxes[2]);
+  require_memory(label_bytes + static_cast<double>(workers) * worker_bytes,
+                 "the labels of " + file + " and the blocks that " + std::to_string(workers) +
+                     " threads decode at a time",
+                 "use fewer threads, or store it in smaller chunks");
+  LabelVolume volume;
+  static_cast<LabelGrid&>(volume) = grid;
+  volume.labels.resize(grid.voxels());
   FirstError first;
   parallel_chunks(boxes[0] * boxes[1] * boxes[2], [&](std::size_t item, unsigned /*worker*/) {
     if (first.before(item)) return;

@@ -19,9 +19,11 @@ TEST(LabelSource, VolumesInMemoryServeTheirLabels) {
 /// Labels that follow from the position of a voxel; those from `first_bad` on fail.
 class ComputedSource final : public LabelSource {
  public:
-  ComputedSource(const VoxelIndex& size, const VoxelIndex& block, int first_bad)
-      : LabelSource(grid_of(size)), block_(block), first_bad_(first_bad) {}
+  ComputedSource(const VoxelIndex& size, const VoxelIndex& block, int first_bad,
+                 std::size_t decoding_bytes = 0)
+      : LabelSource(grid_of(size)), block_(block), first_bad_(first_bad), decoding_bytes_(decoding_bytes) {}
   VoxelIndex block() const override { return block_; }
+  std::size_t decoding_bytes() const override { return decoding_bytes_; }
 
  protected:
   void read_box(const VoxelIndex& low, const VoxelIndex& high, std::span<MaterialTag> out) const override {
@@ -41,6 +43,7 @@ class ComputedSource final : public LabelSource {
   }
   VoxelIndex block_;
   int first_bad_;
+  std::size_t decoding_bytes_;
 };
 
 TEST(LabelSource, BlocksOfAnyShapeFillTheVolume) {
@@ -84,6 +87,26 @@ TEST(LabelSource, VolumesThatAreTooLargeForMemoryAreRefused) {
   EXPECT_NE(error_of<OutputError>([&] {
               (void)read_all(ComputedSource({100, 100, 100}, {9, 9, 9}, 100), "f");
             }).find("the labels of f would take"),
+            std::string::npos);
+}
+
+TEST(LabelSource, BlocksOfAllThreadsAreCountedAgainstTheMemory) {
+  const MemoryLimit limit(2e8);
+  // 42 MB of labels in five boxes.
+  const ComputedSource source({512, 512, 40}, {512, 512, 1}, 40, 50000000);
+  for (const unsigned threads : {1u, 3u}) {
+    const ThreadLimit threads_limit(threads);
+    EXPECT_EQ(read_all(source, "f").labels.size(), source.grid().voxels());
+  }
+  const ThreadLimit threads_limit(8);
+  const std::string message = error_of<OutputError>([&] { (void)read_all(source, "f"); });
+  EXPECT_NE(message.find("the labels of f and the blocks that 5 threads decode at a time would take"),
+            std::string::npos)
+      << message;
+  // Boxes that are copied count, too: 8 MB for each thread, beside 160 MB of labels.
+  EXPECT_NE(error_of<OutputError>([&] {
+              (void)read_all(ComputedSource({400, 400, 250}, {128, 128, 128}, 250), "f");
+            }).find("8 threads decode"),
             std::string::npos);
 }
 

@@ -30,6 +30,9 @@ class LabelSource {
   /// of it decode each block once. A block may extend beyond the grid.
   virtual VoxelIndex block() const = 0;
 
+  /// Memory that each thread needs to decode a block, bytes.
+  virtual std::size_t decoding_bytes() const { return 0; }
+
   /// Whether all labels are in memory, for example since their file is compressed as a whole.
   virtual bool in_memory() const { return false; }
 
@@ -68,7 +71,8 @@ class MemoryLabelSource final : public LabelSource {
 /// \param file file name for messages
 /// \throws InputError if there are more than 2^31 voxels, and as LabelSource::read() does: the error of the
 ///   first block that has one, for any number of threads
-/// \throws OutputError if the labels exceed available_memory()
+/// \throws OutputError if the labels, and the blocks that threads decode at a time, exceed
+///   available_memory()
 LabelVolume read_all(const LabelSource& source, const std::string& file);
 
 /// Maximum number of voxels of a volume in memory.

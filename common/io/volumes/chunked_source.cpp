@@ -19,19 +19,19 @@ ChunkCache::Chunk ChunkCache::get(std::uint64_t key, const std::function<ByteBuf
   }
   entries_.emplace(key, Entry{nullptr, used_.end()});
   lock.unlock();
-  Chunk chunk;
   try {
-    chunk = std::make_shared<const ByteBuffer>(load());
-  } catch (...) {
+    Chunk chunk = std::make_shared<const ByteBuffer>(load());
     lock.lock();
+    keep(key, chunk);
+    loaded_.notify_all();
+    return chunk;
+  } catch (...) {
+    // Threads that wait for the chunk would wait for ever if its entry stayed.
+    if (!lock.owns_lock()) lock.lock();
     entries_.erase(key);
     loaded_.notify_all();
     throw;
   }
-  lock.lock();
-  keep(key, chunk);
-  loaded_.notify_all();
-  return chunk;
 }
 
 void ChunkCache::keep(std::uint64_t key, const Chunk& chunk) {
@@ -48,8 +48,8 @@ void ChunkCache::keep(std::uint64_t key, const Chunk& chunk) {
     entries_.erase(last);
     used_.pop_back();
   }
+  used_.push_front(key);  // may throw, and has no effect then
   bytes_ += more;
-  used_.push_front(key);
   entries_.at(key) = {chunk, used_.begin()};
 }
 

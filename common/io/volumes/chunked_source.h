@@ -29,7 +29,7 @@ class ChunkCache {
   explicit ChunkCache(std::size_t max_bytes) : max_bytes_(max_bytes) {}
 
   /// Returns the chunk, and calls `load` if it is not kept. Rethrows an exception of `load`, and keeps
-  /// nothing then.
+  /// nothing then, nor if memory runs out (std::bad_alloc); other threads that wait for the chunk load it.
   Chunk get(std::uint64_t key, const std::function<ByteBuffer()>& load);
 
  private:
@@ -64,6 +64,7 @@ std::int64_t checked_chunk_bytes(std::span<const std::int64_t> size, std::size_t
 class ChunkedSource : public LabelSource {
  public:
   VoxelIndex block() const override { return layout_.size; }
+  std::size_t decoding_bytes() const override { return layout_.bytes; }
 
  protected:
   /// \param cache_bytes decoded chunks that are kept, bytes

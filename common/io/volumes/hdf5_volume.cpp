@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
+#include <memory>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -23,6 +25,9 @@ namespace {
 
 /// Datasets without chunks are read in rows of about this size, bytes.
 constexpr std::int64_t contiguous_bytes = std::int64_t{1} << 20;
+
+/// Longest text of an attribute, bytes. ilastik writes some hundred.
+constexpr std::size_t max_attribute_bytes = std::size_t{1} << 16;
 
 /// Serialises the calls of the library, which need not be built for several threads.
 std::mutex& hdf5_mutex() {
@@ -103,24 +108,35 @@ std::string only_dataset(hid_t file, const std::string& path) {
   return found.paths[0];
 }
 
+/// The text of an attribute, or std::nullopt if it is missing, has not exactly one text, or a very long one.
+std::optional<std::string> attribute_text(hid_t dataset, const char* name) {
+  if (H5Aexists(dataset, name) <= 0) return std::nullopt;
+  const Hdf5Handle attribute(H5Aopen(dataset, name, H5P_DEFAULT), H5Aclose);
+  const Hdf5Handle space(H5Aget_space(attribute.id()), H5Sclose), type(H5Aget_type(attribute.id()), H5Tclose);
+  // The library writes as many texts as there are.
+  if (H5Tget_class(type.id()) != H5T_STRING || H5Sget_simple_extent_npoints(space.id()) != 1)
+    return std::nullopt;
+  if (H5Tis_variable_str(type.id()) > 0) {
+    char* read = nullptr;
+    if (H5Aread(attribute.id(), type.id(), static_cast<void*>(&read)) < 0 || !read) return std::nullopt;
+    const std::unique_ptr<char, herr_t (*)(void*)> value(read, H5free_memory);
+    const std::size_t bytes = std::strlen(value.get());
+    if (bytes > max_attribute_bytes) return std::nullopt;
+    return std::string(value.get(), bytes);
+  }
+  const std::size_t bytes = H5Tget_size(type.id());
+  if (bytes > max_attribute_bytes) return std::nullopt;
+  std::string text(bytes, '\0');
+  if (H5Aread(attribute.id(), type.id(), text.data()) < 0) return std::nullopt;
+  text.resize(std::min(text.find('\0'), text.size()));
+  return text;
+}
+
 /// Names of the axes in ilastik's attribute, or none.
 std::vector<std::string> axis_tags(hid_t dataset) {
-  if (H5Aexists(dataset, "axistags") <= 0) return {};
-  const Hdf5Handle attribute(H5Aopen(dataset, "axistags", H5P_DEFAULT), H5Aclose);
-  const Hdf5Handle type(H5Aget_type(attribute.id()), H5Tclose);
-  if (H5Tget_class(type.id()) != H5T_STRING) return {};
-  std::string text;
-  if (H5Tis_variable_str(type.id()) > 0) {
-    char* value = nullptr;
-    if (H5Aread(attribute.id(), type.id(), static_cast<void*>(&value)) < 0 || !value) return {};
-    text = value;
-    H5free_memory(value);
-  } else {
-    text.resize(H5Tget_size(type.id()));
-    if (H5Aread(attribute.id(), type.id(), text.data()) < 0) return {};
-    text.resize(std::min(text.find('\0'), text.size()));
-  }
-  const nlohmann::json tags = nlohmann::json::parse(text, nullptr, false);
+  const std::optional<std::string> text = attribute_text(dataset, "axistags");
+  if (!text) return {};
+  const nlohmann::json tags = nlohmann::json::parse(*text, nullptr, false);
   std::vector<std::string> names;
   if (!tags.is_object() || !tags.contains("axes") || !tags["axes"].is_array()) return {};
   for (const nlohmann::json& axis : tags["axes"])
@@ -150,7 +166,8 @@ struct Hdf5Dataset {
   std::string name;  ///< file and dataset for messages
   std::vector<std::int64_t> shape, chunk;
   std::array<std::size_t, 3> axes{};  ///< x, y and z
-  Hdf5Type type;
+  VoxelType type = VoxelType::uint8;
+  Hdf5Handle memory;  ///< type of the numbers in memory
 };
 
 void check_filters(hid_t creation, const std::string& name) {
@@ -183,7 +200,16 @@ Hdf5Dataset open_dataset(const std::string& path, std::string inside) {
   const Hdf5Handle stored(H5Dget_type(dataset.id()), H5Tclose);
   const std::optional<Hdf5Type> type = number_type(stored.id());
   if (!type) throw InputError(name, 0, "its items are not whole numbers; store the labels as integers");
-  Hdf5Dataset out{std::move(file), std::move(dataset), name, {}, {}, {}, *type};
+  // Enumerations are read as they are, since the library converts them only to themselves.
+  Hdf5Handle memory(H5Tget_class(stored.id()) == H5T_ENUM ? H5Tget_native_type(stored.id(), H5T_DIR_DEFAULT)
+                                                          : H5Tcopy(type->memory),
+                    H5Tclose);
+  // Native numbers may have fewer bytes than the file's, if those do not use all of their bits.
+  if (H5Tget_size(memory.id()) != voxel_bytes(type->type))
+    throw InputError(name, 0,
+                     "its items are an enumeration of numbers that do not fill their bytes; store the labels "
+                     "as integers");
+  Hdf5Dataset out{std::move(file), std::move(dataset), name, {}, {}, {}, type->type, std::move(memory)};
   out.shape = shape_of(out.dataset.id());
   out.axes = spatial_axes(out.shape, axis_tags(out.dataset.id()), name);
   const Hdf5Handle creation(H5Dget_create_plist(out.dataset.id()), H5Pclose);
@@ -233,7 +259,7 @@ class Hdf5Source final : public ChunkedSource {
     if (!from.good() || !to.good() ||
         H5Sselect_hyperslab(from.id(), H5S_SELECT_SET, begin.data(), nullptr, count.data(), nullptr) < 0 ||
         H5Sselect_hyperslab(to.id(), H5S_SELECT_SET, origin.data(), nullptr, count.data(), nullptr) < 0 ||
-        read(from.id(), to.id(), out.data.get()) < 0)
+        H5Dread(file_->dataset.id(), file_->memory.id(), to.id(), from.id(), H5P_DEFAULT, out.data.get()) < 0)
       throw InputError(chunk_name(chunk) + " cannot be read; the file is damaged or truncated");
     return out;
   }
@@ -248,15 +274,6 @@ class Hdf5Source final : public ChunkedSource {
   }  // the library fills chunks
 
  private:
-  /// Enumerations are read as they are, since the library converts them only to themselves.
-  herr_t read(hid_t from, hid_t to, char* bytes) const {
-    const Hdf5Handle stored(H5Dget_type(file_->dataset.id()), H5Tclose);
-    if (H5Tget_class(stored.id()) != H5T_ENUM)
-      return H5Dread(file_->dataset.id(), file_->type.memory, to, from, H5P_DEFAULT, bytes);
-    const Hdf5Handle native(H5Tget_native_type(stored.id(), H5T_DIR_DEFAULT), H5Tclose);
-    return H5Dread(file_->dataset.id(), native.id(), to, from, H5P_DEFAULT, bytes);
-  }
-
   std::optional<Hdf5Dataset> file_;
 };
 
@@ -276,7 +293,7 @@ std::unique_ptr<LabelSource> open_hdf5_volume(const std::string& path, const std
     grid.spacing_assumed = true;
   check_geometry(grid, opened.name);
   ChunkLayout layout;
-  layout.format.type = opened.type.type;
+  layout.format.type = opened.type;
   const std::size_t each = voxel_bytes(layout.format.type);
   layout.bytes = static_cast<std::size_t>(checked_chunk_bytes(opened.chunk, each, opened.name));
   const std::vector<std::size_t> strides = strides_of(opened.chunk, row_major_order(opened.chunk.size()));

@@ -92,6 +92,9 @@ std::uint64_t offset_from_end(std::uint64_t file_size, const std::array<int, 3>&
 }
 
 std::unique_ptr<LabelSource> open_raw_volume(RawVolume volume) {
+  // Beyond this limit offsets of voxels would not fit into 64 bits.
+  const std::array<std::int64_t, 3> size{volume.grid.size[0], volume.grid.size[1], volume.grid.size[2]};
+  (void)checked_size(size, volume.file, 0, max_source_voxels);
   return std::make_unique<RawVolumeSource>(std::move(volume));
 }
 

@@ -36,7 +36,8 @@ using RawVolumeFinder = std::optional<RawVolume> (*)(const HeaderBytes& head, co
 std::uint64_t offset_from_end(std::uint64_t file_size, const std::array<int, 3>& size, VoxelType type);
 
 /// Opens a volume that reads the ranges of its file that a box needs, and keeps nothing in memory.
-/// \throws InputError if the file with the voxels cannot be read or is too short
+/// \throws InputError if the file with the voxels cannot be read or is too short, or there are more than
+///   max_source_voxels
 std::unique_ptr<LabelSource> open_raw_volume(RawVolume volume);
 
 /// Finds and opens the volume.

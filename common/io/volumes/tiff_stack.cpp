@@ -265,6 +265,8 @@ std::optional<Vec3> spacing_of(const std::string& path, const TiffDescription& f
 }
 
 /// ImageJ writes stacks of more than 4 GB as one page, which other pages without an entry follow.
+/// \return std::nullopt if the file has the first page alone
+/// \throws InputError if there are more voxels than a volume can have
 std::optional<RawVolume> follow_first_page(const TiffStack& stack, const LabelGrid& grid) {
   const TiffDescription& first = stack.description;
   const auto images = imagej_number(first.text, "images");
@@ -272,8 +274,19 @@ std::optional<RawVolume> follow_first_page(const TiffStack& stack, const LabelGr
       stack.pages[0].shape.tiled || !(*images > 1 && *images <= std::numeric_limits<int>::max()))
     return std::nullopt;
   RawVolume raw{grid, stack.files[0], first.first_offset, {}};
-  raw.grid.size[2] = static_cast<int>(*images);
   raw.format.type = stack.pages[0].shape.type;
+  const std::uint64_t page_bytes = voxel_data_bytes(grid.size, raw.format.type);
+  const std::uint64_t file_size = FileRanges(raw.file).size();
+  const std::uint64_t there = file_size > raw.offset ? file_size - raw.offset : 0;
+  // A page that was cut from a stack may keep its description. Two images and more without the others are a
+  // stack that is truncated.
+  if (there / 2 < page_bytes) return std::nullopt;
+  const std::array<std::int64_t, 3> size{grid.size[0], grid.size[1], static_cast<std::int64_t>(*images)};
+  raw.grid.size = checked_size(size, raw.file, 0, max_source_voxels);
+  // Nor do images follow each other where the page's entry is.
+  const std::uint64_t directory = stack.pages[0].offset;
+  if (directory >= raw.offset && directory - raw.offset < voxel_data_bytes(raw.grid.size, raw.format.type))
+    return std::nullopt;
   raw.format.swap = first.big_endian == little_endian_machine;
   return raw;
 }

@@ -24,6 +24,14 @@ using nlohmann::json;
 /// More axes than any array has.
 constexpr std::size_t max_zarr_axes = 32;
 
+/// Deeper than any metadata, and few enough levels for functions that call themselves for each.
+constexpr int max_zarr_levels = 64;
+
+/// A value for messages.
+std::string value_text(const json& value) {
+  return value.is_array() ? "[...]" : value.is_object() ? "{...}" : value.dump(-1, ' ', true);
+}
+
 /// Reads the members of a JSON object.
 class ZarrJson {
  public:
@@ -51,7 +59,7 @@ class ZarrJson {
     std::vector<std::int64_t> out;
     for (const json& item : list) {
       if (!item.is_number_integer() || item < 0 || item > std::numeric_limits<std::int64_t>::max())
-        fail(in_quotes(key) + " has " + in_quotes(item.dump(-1, ' ', true)) +
+        fail(in_quotes(key) + " has " + in_quotes(value_text(item)) +
              ", which is not a size; the metadata are damaged");
       out.push_back(item.get<std::int64_t>());
     }
@@ -65,7 +73,15 @@ class ZarrJson {
 };
 
 json parsed(std::string_view text, const std::string& file) {
-  json value = json::parse(text, nullptr, false);
+  const auto check_level = [&](int level, json::parse_event_t event, const json& /*parsed*/) {
+    if (level >= max_zarr_levels &&
+        (event == json::parse_event_t::object_start || event == json::parse_event_t::array_start))
+      throw InputError(file, 0,
+                       "its lists and objects are nested deeper than " + std::to_string(max_zarr_levels) +
+                           " levels; the metadata are damaged");
+    return true;
+  };
+  json value = json::parse(text, check_level, false);
   if (value.is_discarded()) throw InputError(file, 0, "it is not valid JSON; the file is damaged");
   if (!value.is_object()) throw InputError(file, 0, "it is not a JSON object; the file is damaged");
   return value;
@@ -79,7 +95,7 @@ std::vector<std::size_t> column_major_order(std::size_t axes) {
 
 /// Sets the label of missing chunks.
 void take_fill(const json& value, ZarrArray& array) {
-  array.fill_text = value.is_null() ? "null" : value.dump(-1, ' ', true);
+  array.fill_text = value_text(value);
   if (value.is_null()) {
     array.fill = 0;  // undefined by the specification
   } else if (value.is_boolean()) {
@@ -113,7 +129,7 @@ VoxelFormat typestr_format(const ZarrJson& array) {
       format.swap = voxel_bytes(value) > 1 && type.starts_with('<') != little_endian_machine;
       return format;
     }
-  array.fail("items of type " + in_quotes(array.member("dtype").dump(-1, ' ', true)) +
+  array.fail("items of type " + in_quotes(value_text(array.member("dtype"))) +
              " are not supported; store the labels as integers");
 }
 
@@ -133,7 +149,7 @@ VoxelType named_type(const ZarrJson& array) {
   const std::string type = array.text("data_type");
   for (const auto& [name, value] : types)
     if (type == name) return value;
-  array.fail("items of type " + in_quotes(array.member("data_type").dump(-1, ' ', true)) +
+  array.fail("items of type " + in_quotes(value_text(array.member("data_type"))) +
              " are not supported; store the labels as integers");
 }
 
@@ -325,8 +341,7 @@ ZarrArray parse_zarr2_array(std::string_view text, const std::string& file) {
   const json value = parsed(text, file);
   const ZarrJson metadata(value, file);
   if (metadata.member("zarr_format") != 2)
-    metadata.fail("its zarr_format is " + in_quotes(metadata.member("zarr_format").dump(-1, ' ', true)) +
-                  ", not 2");
+    metadata.fail("its zarr_format is " + in_quotes(value_text(metadata.member("zarr_format"))) + ", not 2");
   ZarrArray array;
   array.shape = metadata.sizes("shape");
   array.chunk.size = metadata.sizes("chunks");
@@ -359,8 +374,7 @@ std::optional<ZarrArray> parse_zarr3_array(std::string_view text, const std::str
   const json value = parsed(text, file);
   const ZarrJson metadata(value, file);
   if (metadata.member("zarr_format") != 3)
-    metadata.fail("its zarr_format is " + in_quotes(metadata.member("zarr_format").dump(-1, ' ', true)) +
-                  ", not 3");
+    metadata.fail("its zarr_format is " + in_quotes(value_text(metadata.member("zarr_format"))) + ", not 3");
   const std::string node = metadata.text("node_type");
   if (node == "group") return std::nullopt;
   if (node != "array") metadata.fail("its node_type is " + in_quotes(node) + ", neither array nor group");

@@ -2,8 +2,29 @@
 #include "common/io/volumes/chunked_source.h"
 
 #include <atomic>
+#include <cstdlib>
+#include <new>
 
 #include "tests/common/io/volume_boxes.h"
+
+namespace tetwright::chunked_source_test {
+namespace {
+
+/// Allocations of this thread up to the one that fails, or 0.
+thread_local int allocations_to_failure = 0;
+
+}  // namespace
+}  // namespace tetwright::chunked_source_test
+
+// Not inlined, since GCC would then take a pair of operators for mismatched functions.
+[[gnu::noinline]] void* operator new(std::size_t bytes) {
+  int& left = tetwright::chunked_source_test::allocations_to_failure;
+  if (left > 0 && --left == 0) throw std::bad_alloc();
+  if (void* memory = std::malloc(bytes > 0 ? bytes : 1)) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t /*bytes*/) noexcept { std::free(memory); }
 
 namespace tetwright::chunked_source_test {
 namespace {
@@ -48,6 +69,26 @@ TEST(ChunkCache, NothingIsKeptOfALoadThatFails) {
         error_of<InputError>([&] { (void)cache.get(1, []() -> ByteBuffer { throw InputError("bad"); }); }),
         "bad");
   EXPECT_EQ(cache.get(1, [] { return ByteBuffer(7); })->size, 7u);
+}
+
+TEST(ChunkCache, ChunksThatCannotBeKeptAreLoadedAgain) {
+  int failures = 0;
+  for (int n = 1; n <= 4; ++n) {
+    ChunkCache cache(1000);
+    const auto fails_after_loading = [&] {
+      ByteBuffer buffer(7);
+      allocations_to_failure = n;
+      return buffer;
+    };
+    try {
+      (void)cache.get(1, fails_after_loading);
+    } catch (const std::bad_alloc&) {
+      ++failures;
+    }
+    allocations_to_failure = 0;
+    EXPECT_EQ(cache.get(1, [] { return ByteBuffer(7); })->size, 7u);
+  }
+  EXPECT_GE(failures, 2);  // the chunk itself, and its key among those that were used
 }
 
 TEST(ChunkCache, SeveralThreadsLoadAChunkOnce) {

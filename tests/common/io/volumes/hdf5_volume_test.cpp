@@ -52,6 +52,22 @@ class Hdf5Volumes : public FileTest {
     H5Awrite(attribute.id(), type.id(), text.data());
   }
 
+  /// Sets an attribute of several texts, of variable or fixed length.
+  static void set_texts(const Hdf5Handle& dataset, const char* name, const std::string& text, hsize_t n,
+                        bool variable) {
+    const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate_simple(1, &n, nullptr), H5Sclose);
+    H5Tset_size(type.id(), variable ? H5T_VARIABLE : text.size());
+    const Hdf5Handle attribute(
+        H5Acreate2(dataset.id(), name, type.id(), space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    if (n == 0) return;
+    const std::vector<const char*> pointers(n, text.c_str());
+    std::string bytes;
+    for (hsize_t i = 0; i < n && !variable; ++i) bytes += text;
+    EXPECT_GE(H5Awrite(attribute.id(), type.id(),
+                       variable ? static_cast<const void*>(pointers.data()) : bytes.data()),
+              0);
+  }
+
   static void set_numbers(const Hdf5Handle& dataset, const char* name, const std::vector<double>& numbers) {
     const hsize_t n = numbers.size();
     const Hdf5Handle space(H5Screate_simple(1, &n, nullptr), H5Sclose);
@@ -131,6 +147,58 @@ TEST_F(Hdf5Volumes, SpacingAndAxesOfIlastik) {
   source->read({2, 3, 4}, {3, 4, 5}, label);
   EXPECT_EQ(label, box_of(numbered_volume(size), {4, 3, 2}, {5, 4, 3}));
   EXPECT_NE(message("/d").find("axis \"c\" has 2 items"), std::string::npos) << message("/d");
+}
+
+TEST_F(Hdf5Volumes, AttributesOfAnotherSizeAreIgnored) {
+  const std::string tags = R"({"axes":[{"key":"x"},{"key":"y"},{"key":"z"}]})";
+  // Attributes of more than 64 KB need the newest format of files.
+  const Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_libver_bounds(access.id(), H5F_LIBVER_LATEST, H5F_LIBVER_LATEST);
+  file_.emplace(H5Fcreate(path("a.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose);
+  std::vector<std::string> ignored, taken;
+  for (const bool variable : {true, false}) {
+    const std::string kind = variable ? "/variable" : "/fixed";
+    const auto with_tags = [&](const std::string& name, const std::string& text, hsize_t n) {
+      const Hdf5Handle dataset = add(name, H5T_STD_U8LE, {11, 13, 19}, {});
+      set_texts(dataset, "axistags", text, n, variable);
+      set_numbers(dataset, "element_size_um", std::vector<double>(n == 1 ? 3 : 1000, 2));
+      return name;
+    };
+    taken.push_back(with_tags(kind + "_one", tags, 1));
+    ignored.push_back(with_tags(kind + "_many", tags, 2000));
+    ignored.push_back(with_tags(kind + "_none", tags, 0));
+    ignored.push_back(with_tags(kind + "_long", tags + std::string(1 << 16, ' '), 1));
+  }
+  close();
+  for (const std::string& name : taken) EXPECT_EQ(open(name)->grid().size, (VoxelIndex{11, 13, 19})) << name;
+  for (const std::string& name : ignored) {
+    const auto source = open(name);
+    EXPECT_EQ(source->grid().spacing_assumed, !name.ends_with("_long")) << name;
+    expect_labels(*source, numbered_volume(size));
+  }
+}
+
+TEST_F(Hdf5Volumes, EnumerationsThatDoNotFillTheirBytesAreRefused) {
+  create();
+  for (const bool whole : {true, false}) {
+    const Hdf5Handle number(H5Tcopy(H5T_STD_I32LE), H5Tclose);
+    if (!whole) H5Tset_precision(number.id(), 8);
+    const Hdf5Handle type(H5Tenum_create(number.id()), H5Tclose);
+    for (int value = 0; value < 127; ++value) {
+      const std::int32_t stored = value;
+      H5Tenum_insert(type.id(), ("label" + std::to_string(value)).c_str(), &stored);
+    }
+    const hsize_t shape[] = {2, 1, 2};
+    const Hdf5Handle space(H5Screate_simple(3, shape, nullptr), H5Sclose);
+    const Hdf5Handle dataset(H5Dcreate2(file_->id(), whole ? "/whole" : "/part", type.id(), space.id(),
+                                        H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
+                             H5Dclose);
+    const std::int32_t values[] = {1, 0, 126, 1};
+    EXPECT_GE(H5Dwrite(dataset.id(), type.id(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values), 0);
+  }
+  close();
+  EXPECT_EQ(read_all(*open("/whole"), "f").labels, (std::vector<MaterialTag>{1, 0, 126, 1}));
+  EXPECT_NE(message("/part").find("do not fill their bytes"), std::string::npos) << message("/part");
 }
 
 TEST_F(Hdf5Volumes, MissingChunksAndBooleans) {

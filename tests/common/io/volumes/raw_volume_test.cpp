@@ -156,6 +156,16 @@ TEST_F(RawVolumes, TruncatedAndDamagedFilesAreNamed) {
       << message;
 }
 
+TEST_F(RawVolumes, SizesWhoseProductOverflowsAreRefused) {
+  put(path("a.raw"), "a few bytes");
+  for (const VoxelIndex& wrong : {VoxelIndex{1 << 20, 1 << 20, 1 << 24}, {1 << 20, 1 << 20, 1 << 20}}) {
+    RawVolume volume{{}, path("a.raw"), 0, {}};
+    volume.grid.size = wrong;
+    const std::string message = error_of<InputError>([&] { (void)open_raw_volume(volume); });
+    EXPECT_NE(message.find("makes more than 576460752303423488 voxels"), std::string::npos) << message;
+  }
+}
+
 TEST_F(RawVolumes, FilesThatShrinkWhileTheyAreReadAreNamed) {
   put(path("a.nrrd"), nrrd_header("uchar", "") + voxels<std::uint8_t>());
   const auto source = open_label_source(path("a.nrrd"));

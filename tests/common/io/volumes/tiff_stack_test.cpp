@@ -260,6 +260,30 @@ TEST_F(TiffStacks, StacksOfImageJWithOneEntry) {
   }
 }
 
+TEST_F(TiffStacks, PagesCutFromStacksOfImageJAreReadAlone) {
+  const LabelVolume page = slice_of(numbered_volume(size), 0);
+  put(path("a.tif"), one_entry(page, std::string("ImageJ=1.53t\nimages=50\nslices=50\n\0", 34), false));
+  expect_labels(*open_tiff_stack(path("a.tif"), cache_bytes), page);
+  // Here the entry and the description follow the voxels.
+  write_stack<std::uint8_t>(path("a.tif"), page, {.description = "ImageJ=1.53t\nimages=50\n"});
+  expect_labels(*open_tiff_stack(path("a.tif"), cache_bytes), page);
+  // They are longer than all images that the description promises.
+  const LabelVolume small = numbered_volume({4, 3, 1});
+  write_stack<std::uint8_t>(path("a.tif"), small, {.description = "ImageJ=1.53t\nimages=2\n"});
+  expect_labels(*open_tiff_stack(path("a.tif"), cache_bytes), small);
+}
+
+TEST_F(TiffStacks, StacksOfImageJWhoseBytesOverflowAreRefused) {
+  // 2^31 - 1 images of 2^29 voxels; the file has two of them, as a hole.
+  LabelVolume page;
+  page.size = {1 << 15, 1 << 14, 1};
+  put(path("a.tif"), one_entry(page, std::string("ImageJ=1.53t\nimages=2147483647\n\0", 33), false));
+  std::filesystem::resize_file(path("a.tif"), std::uintmax_t{1} << 32);
+  const std::string message =
+      error_of<InputError>([&] { (void)open_tiff_stack(path("a.tif"), cache_bytes); });
+  EXPECT_NE(message.find("makes more than 576460752303423488 voxels"), std::string::npos) << message;
+}
+
 TEST_F(TiffStacks, PagesThatAreNoLabelsAreNamed) {
   const LabelVolume volume = numbered_volume({4, 3, 3});
   const auto message = [&] {

@@ -183,6 +183,10 @@ TEST(Zarr, CodecsOfVersion3) {
       little_bytes + "]");
 }
 
+TEST(Zarr, ThreadsDecodeAChunkAtATime) {
+  EXPECT_EQ(open({{"a/.zarray", second("<u2")}})->decoding_bytes(), 4u * 5 * 6 * 2);
+}
+
 TEST(Zarr, KeysOfVersion2InVersion3) {
   MemoryFiles files = files_of<std::uint8_t>(volume(), {});
   files["a/zarr.json"] =
@@ -398,6 +402,27 @@ TEST(Zarr, WrongMetadataAreRefused) {
   refused(".zattrs", R"({"multiscales":[3]})", "object");
   refused(".zattrs", R"({"multiscales":[{"datasets":[]}]})", "no datasets");
   refused(".zattrs", R"({"multiscales":[{"datasets":[{"path":"../b"}]}]})", "not the path");
+}
+
+TEST(Zarr, MetadataThatAreNestedDeeplyAreRefused) {
+  const auto lists = [](std::size_t levels) { return std::string(levels, '[') + std::string(levels, ']'); };
+  const auto message = [](const std::string& file, const std::string& json) {
+    const MemoryFiles files{{"a/" + file, json}};
+    return error_of<InputError>([&] { (void)read_all(*open(files), "a"); });
+  };
+  const auto with_fill = [&](const std::string& metadata, std::size_t levels) {
+    return replaced(metadata, "\"fill_value\":0", "\"fill_value\":" + lists(levels));
+  };
+  const std::string third_version = third("uint16", "[" + little_bytes + "]");
+  for (const std::size_t levels : {std::size_t{64}, std::size_t{400000}})
+    for (const std::string& text : {message(".zarray", with_fill(second("<u2"), levels)),
+                                    message(".zarray", replaced(second("<u2"), "\"<u2\"", lists(levels))),
+                                    message("zarr.json", with_fill(third_version, levels)),
+                                    message(".zattrs", "{\"multiscales\":" + lists(levels) + "}")})
+      EXPECT_NE(text.find("nested deeper than 64 levels"), std::string::npos) << text;
+  // The deepest ones that are read.
+  const std::string text = message(".zarray", with_fill(second("<u2"), 63));
+  EXPECT_NE(text.find("the fill value \"[...]\" is not a label"), std::string::npos) << text;
 }
 
 TEST(Zarr, DamagedChunksAreRefused) {
