@@ -2,6 +2,7 @@
 #include "tools/parts/part_balance.h"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -14,83 +15,113 @@ namespace {
 class PartBalancer {
  public:
   PartBalancer(const TetNeighbours& neighbours, std::size_t most, TetPartition& partition)
-      : neighbours_(neighbours), most_(most), part_of_(partition.part_of), sizes_(partition.parts, 0) {
-    for (const PartNumber part : part_of_) ++sizes_[part];
+      : neighbours_(neighbours),
+        most_(most),
+        part_of_(partition.part_of),
+        members_(partition.parts),
+        slots_(part_of_.size()),
+        before_(partition.parts, partition.parts) {
+    for (Index t = 0; t < part_of_.size(); ++t) add(t, part_of_[t]);
+    for (PartNumber part = 0; part < partition.parts; ++part) by_size_.emplace(size(part), part);
   }
 
   void balance() {
     fill_empty_parts();
     for (;;) {
       const PartNumber from = largest();
-      if (sizes_[from] <= most_) return;
+      if (size(from) <= most_) return;
       const std::vector<PartNumber> chain = chain_to_room(from);
       if (chain.empty() || !shift(chain)) move_anywhere(from);
     }
   }
 
  private:
-  PartNumber largest() const {
-    return static_cast<PartNumber>(std::max_element(sizes_.begin(), sizes_.end()) - sizes_.begin());
-  }
+  /// Larger parts first, then lower numbers.
+  struct LargerFirst {
+    bool operator()(const std::pair<std::size_t, PartNumber>& a,
+                    const std::pair<std::size_t, PartNumber>& b) const {
+      return a.first != b.first ? a.first > b.first : a.second < b.second;
+    }
+  };
+
+  std::size_t size(PartNumber part) const { return members_[part].size(); }
+  PartNumber largest() const { return by_size_.begin()->second; }
   PartNumber smallest() const {
-    return static_cast<PartNumber>(std::min_element(sizes_.begin(), sizes_.end()) - sizes_.begin());
+    return by_size_.lower_bound(std::pair(by_size_.rbegin()->first, PartNumber{0}))->second;
   }
 
-  void move(Index tet, PartNumber to) {
-    --sizes_[part_of_[tet]];
-    ++sizes_[to];
+  void add(Index tet, PartNumber to) {
     part_of_[tet] = to;
+    slots_[tet] = static_cast<Index>(members_[to].size());
+    members_[to].push_back(tet);
+  }
+  void move(Index tet, PartNumber to) {
+    const PartNumber from = part_of_[tet];
+    by_size_.erase({size(from), from});
+    by_size_.erase({size(to), to});
+    const Index last = members_[from].back();
+    members_[from][slots_[tet]] = last;
+    slots_[last] = slots_[tet];
+    members_[from].pop_back();
+    add(tet, to);
+    by_size_.emplace(size(from), from);
+    by_size_.emplace(size(to), to);
   }
 
   void fill_empty_parts() {
-    for (PartNumber part = 0; part < sizes_.size(); ++part)
-      if (sizes_[part] == 0) {
-        const PartNumber from = largest();
-        move(static_cast<Index>(std::find(part_of_.begin(), part_of_.end(), from) - part_of_.begin()), part);
+    for (PartNumber part = 0; part < members_.size(); ++part)
+      if (members_[part].empty()) {
+        const std::vector<Index>& tets = members_[largest()];
+        move(*std::min_element(tets.begin(), tets.end()), part);
       }
   }
 
   /// Moves the surplus of a part to those with room, from its end.
   void move_anywhere(PartNumber from) {
-    for (std::size_t t = part_of_.size(); t-- > 0 && sizes_[from] > most_;)
-      if (part_of_[t] == from) move(static_cast<Index>(t), smallest());
+    std::vector<Index> tets = members_[from];
+    std::sort(tets.begin(), tets.end());
+    for (; size(from) > most_; tets.pop_back()) move(tets.back(), smallest());
+  }
+
+  /// Parts beside another one, in ascending order.
+  std::vector<PartNumber> parts_next_to(PartNumber part) const {
+    std::vector<PartNumber> parts;
+    for (const Index t : members_[part])
+      for (const Index other : neighbours_[t])
+        if (other != no_index && part_of_[other] != part) parts.push_back(part_of_[other]);
+    std::sort(parts.begin(), parts.end());
+    parts.erase(std::unique(parts.begin(), parts.end()), parts.end());
+    return parts;
   }
 
   /// Parts from one that has too many to the nearest that has room, each next to the one before; empty if
   /// there is none.
-  std::vector<PartNumber> chain_to_room(PartNumber from) const {
-    std::vector<std::pair<PartNumber, PartNumber>> next_to;
-    for (Index t = 0; t < part_of_.size(); ++t)
-      for (const Index other : neighbours_[t])
-        if (other != no_index && part_of_[other] != part_of_[t])
-          next_to.emplace_back(part_of_[t], part_of_[other]);
-    std::sort(next_to.begin(), next_to.end());
-    next_to.erase(std::unique(next_to.begin(), next_to.end()), next_to.end());
-    const auto none = static_cast<PartNumber>(sizes_.size());
-    std::vector<PartNumber> before(sizes_.size(), none), reached{from};
-    before[from] = from;
+  std::vector<PartNumber> chain_to_room(PartNumber from) {
+    const auto none = static_cast<PartNumber>(members_.size());
+    std::vector<PartNumber> reached{from}, chain;
+    before_[from] = from;
     for (std::size_t i = 0; i < reached.size(); ++i) {
       PartNumber part = reached[i];
-      if (sizes_[part] < most_) {
-        std::vector<PartNumber> chain{part};
-        for (; part != from; part = before[part]) chain.push_back(before[part]);
+      if (size(part) < most_) {
+        chain.push_back(part);
+        for (; part != from; part = before_[part]) chain.push_back(before_[part]);
         std::reverse(chain.begin(), chain.end());
-        return chain;
+        break;
       }
-      for (auto pair = std::lower_bound(next_to.begin(), next_to.end(), std::pair(part, PartNumber{0}));
-           pair != next_to.end() && pair->first == part; ++pair)
-        if (before[pair->second] == none) {
-          before[pair->second] = part;
-          reached.push_back(pair->second);
+      for (const PartNumber next : parts_next_to(part))
+        if (before_[next] == none) {
+          before_[next] = part;
+          reached.push_back(next);
         }
     }
-    return {};
+    for (const PartNumber part : reached) before_[part] = none;
+    return chain;
   }
 
   /// Moves tets along a chain, the last step first, so that no part on it becomes larger than it was.
   /// \return false if the first part keeps its tets
   bool shift(const std::vector<PartNumber>& chain) {
-    std::size_t amount = std::min(sizes_[chain.front()] - most_, most_ - sizes_[chain.back()]);
+    std::size_t amount = std::min(size(chain.front()) - most_, most_ - size(chain.back()));
     for (std::size_t step = chain.size() - 1; step-- > 0;)
       amount = move_next_to(chain[step], chain[step + 1], amount);
     return amount > 0;
@@ -100,8 +131,7 @@ class PartBalancer {
   /// least by their own part. \return the number of tets moved
   std::size_t move_next_to(PartNumber from, PartNumber to, std::size_t amount) {
     std::vector<std::pair<int, Index>> candidates;  // faces inside its part minus those to the other, tet
-    for (Index t = 0; t < part_of_.size(); ++t) {
-      if (part_of_[t] != from) continue;
+    for (const Index t : members_[from]) {
       int inside = 0, across = 0;
       for (const Index other : neighbours_[t])
         if (other != no_index) {
@@ -110,7 +140,7 @@ class PartBalancer {
         }
       if (across > 0) candidates.emplace_back(inside - across, t);
     }
-    amount = std::min({amount, candidates.size(), sizes_[from] - 1});
+    amount = std::min({amount, candidates.size(), size(from) - 1});
     std::sort(candidates.begin(), candidates.end());
     for (std::size_t i = 0; i < amount; ++i) move(candidates[i].second, to);
     return amount;
@@ -119,7 +149,11 @@ class PartBalancer {
   const TetNeighbours& neighbours_;
   std::size_t most_;
   std::vector<PartNumber>& part_of_;
-  std::vector<std::size_t> sizes_;
+  std::vector<std::vector<Index>> members_;  ///< tets of each part, in no particular order
+  std::vector<Index> slots_;                 ///< of each tet among the members of its part
+  std::set<std::pair<std::size_t, PartNumber>, LargerFirst> by_size_;
+  /// Part before each on the way from the first one, in chain_to_room(); elsewhere the number of parts.
+  std::vector<PartNumber> before_;
 };
 
 /// Pieces of parts, by the smallest tet of each.

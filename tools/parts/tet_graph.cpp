@@ -26,6 +26,24 @@ TetNeighbours tet_neighbours(const TetMesh& mesh) {
   return neighbours;
 }
 
+WeightedGraph subgraph(const WeightedGraph& graph, const std::vector<std::int32_t>& vertices) {
+  WeightedGraph part;
+  part.starts.push_back(0);
+  for (const std::int32_t vertex : vertices) {
+    const auto v = static_cast<std::size_t>(vertex);
+    for (auto e = static_cast<std::size_t>(graph.starts[v]);
+         e < static_cast<std::size_t>(graph.starts[v + 1]); ++e) {
+      const auto other = std::lower_bound(vertices.begin(), vertices.end(), graph.neighbours[e]);
+      if (other == vertices.end() || *other != graph.neighbours[e]) continue;
+      part.neighbours.push_back(static_cast<std::int32_t>(other - vertices.begin()));
+      if (!graph.edge_weights.empty()) part.edge_weights.push_back(graph.edge_weights[e]);
+    }
+    part.starts.push_back(static_cast<std::int32_t>(part.neighbours.size()));
+    if (!graph.vertex_weights.empty()) part.vertex_weights.push_back(graph.vertex_weights[v]);
+  }
+  return part;
+}
+
 WeightedGraph graph_of(const TetNeighbours& neighbours) {
   WeightedGraph graph;
   graph.starts.push_back(0);

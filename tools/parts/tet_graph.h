@@ -19,6 +19,9 @@ struct WeightedGraph {
   std::vector<std::int32_t> starts, neighbours, edge_weights, vertex_weights;  ///< weights may be empty: 1
 };
 
+/// Some vertices of a graph, in ascending order, and the edges between them.
+WeightedGraph subgraph(const WeightedGraph& graph, const std::vector<std::int32_t>& vertices);
+
 /// The graph of the tets.
 /// \pre fewer than 2^29 tets
 WeightedGraph graph_of(const TetNeighbours& neighbours);

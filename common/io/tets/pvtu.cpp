@@ -2,7 +2,9 @@
 #include "common/io/tets/pvtu.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <pugixml.hpp>
 #include <span>
@@ -19,10 +21,16 @@
 #include "common/io/text/text_scanner.h"
 #include "common/utf8.h"
 #include "tetwright/error.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 
 namespace {
+
+/// Whether a path leads out of the folder that it is relative to.
+bool leaves_folder(const std::filesystem::path& path) {
+  return path.has_root_path() || std::find(path.begin(), path.end(), "..") != path.end();
+}
 
 /// Paths of the pieces that a .pvtu file names.
 std::vector<std::string> piece_files(std::string_view bytes, const std::string& path) {
@@ -37,29 +45,24 @@ std::vector<std::string> piece_files(std::string_view bytes, const std::string& 
   if (type != "PUnstructuredGrid")
     throw InputError(path + ": a file of type PUnstructuredGrid is needed, this one is " + in_quotes(type));
   std::vector<std::string> files;
+  std::map<std::filesystem::path, std::size_t> numbers;  // of the pieces
   for (const pugi::xml_node piece : root.child("PUnstructuredGrid").children("Piece")) {
     const std::string source = piece.attribute("Source").as_string();
     if (source.empty())
       throw InputError(path + ": piece " + std::to_string(files.size()) + " has no Source; export it again");
+    if (leaves_folder(source))
+      throw InputError(path + ": piece " + std::to_string(files.size()) + ": " + in_quotes(source) +
+                       " is not a file in its folder; move the pieces there and export the file again");
+    const auto [known, added] =
+        numbers.emplace(std::filesystem::path(source).lexically_normal(), files.size());
+    if (!added)
+      throw InputError(path + ": pieces " + std::to_string(known->second) + " and " +
+                       std::to_string(files.size()) + " are the same file, " + in_quotes(source) +
+                       "; export it again");
     files.push_back((std::filesystem::path(path).parent_path() / source).string());
   }
   if (files.empty()) throw InputError(path + ": there is no Piece in it");
   return files;
-}
-
-/// Removes a field of whole numbers from a list.
-/// \return its values; nothing if there is none with this name and number of components
-std::optional<std::vector<std::int64_t>> take_numbers(std::vector<MeshField>& fields, const char* name,
-                                                      int components = 1) {
-  const auto field = std::find_if(fields.begin(), fields.end(), [&](const MeshField& f) {
-    return f.name == name && f.components == components && f.integer;
-  });
-  if (field == fields.end()) return {};
-  std::vector<std::int64_t> numbers;
-  numbers.reserve(field->values.size());
-  for (const double value : field->values) numbers.push_back(static_cast<std::int64_t>(value));
-  fields.erase(field);
-  return numbers;
 }
 
 std::vector<std::uint8_t> marks_of(const std::vector<std::int64_t>& numbers) {
@@ -67,6 +70,22 @@ std::vector<std::uint8_t> marks_of(const std::vector<std::int64_t>& numbers) {
   marks.reserve(numbers.size());
   for (const std::int64_t n : numbers) marks.push_back((n & vtk_duplicate) != 0);
   return marks;
+}
+
+/// Memory of the fields' values, bytes.
+double memory_of(const std::vector<MeshField>& fields) {
+  double values = 0;
+  for (const MeshField& field : fields) values += static_cast<double>(field.values.size());
+  return sizeof(double) * values;
+}
+
+/// Memory of a piece until the mesh is joined, bytes.
+double memory_of(const ReadPiece& piece) {
+  return static_cast<double>(piece.points.size() * (sizeof(Vec3) + sizeof(std::int64_t) + 1) +
+                             piece.tets.size() * (sizeof(Tet) + sizeof(std::int64_t) + 1) +
+                             piece.midside.size() * sizeof(piece.midside[0]) +
+                             piece.face_groups.size() * sizeof(std::int64_t)) +
+         memory_of(piece.point_fields) + memory_of(piece.cell_fields);
 }
 
 /// Reads pieces that number their tets and points.
@@ -114,6 +133,7 @@ class NumberedPieces {
     } catch (const InputError& e) {
       throw InputError(path_ + ": piece " + std::to_string(number) + ": " + e.what());
     }
+    require(static_cast<double>(bytes.size()));
     const VtuData data(bytes, file);
     const std::vector<pugi::xml_node> nodes = data.pieces("UnstructuredGrid");
     if (nodes.size() > 1) return false;
@@ -124,10 +144,10 @@ class NumberedPieces {
     piece.points = data.points(node, points);
     piece.point_fields = data.fields(node.child("PointData"), points, nullptr, &rounded_);
     piece.cell_fields = data.fields(node.child("CellData"), cells, nullptr, &rounded_);
-    auto node_numbers = take_numbers(piece.point_fields, vtk_node_numbers),
-         tet_numbers = take_numbers(piece.cell_fields, vtk_cell_numbers);
-    const auto node_ghosts = take_numbers(piece.point_fields, vtk_ghosts),
-               tet_ghosts = take_numbers(piece.cell_fields, vtk_ghosts);
+    auto node_numbers = take_numbers(piece.point_fields, vtk_node_numbers, number),
+         tet_numbers = take_numbers(piece.cell_fields, vtk_cell_numbers, number);
+    const auto node_ghosts = take_numbers(piece.point_fields, vtk_ghosts, number),
+               tet_ghosts = take_numbers(piece.cell_fields, vtk_ghosts, number);
     if (!node_numbers || !tet_numbers) {
       if (points > 0 || cells > 0) return false;
       pieces_.push_back(std::move(piece));  // parallel programs write empty pieces
@@ -138,11 +158,56 @@ class NumberedPieces {
     if (node_ghosts) piece.node_ghosts = marks_of(*node_ghosts);
     piece.tet_ghosts = tet_ghosts ? marks_of(*tet_ghosts) : std::vector<std::uint8_t>(cells, 0);
     if (!read_tets(data, node, piece)) return false;
-    if (auto groups = take_numbers(piece.cell_fields, vtk_face_groups, 4))
+    if (auto groups = take_numbers(piece.cell_fields, vtk_face_groups, number, 4))
       piece.face_groups = std::move(*groups);
     read_field_data(data, node.parent(), bytes.size(), number);
+    check_own_tets(piece, number);
+    held_ += memory_of(piece);
+    require(0);
     pieces_.push_back(std::move(piece));
     return true;
+  }
+
+  /// Removes a field of whole numbers from a list.
+  /// \return its values; nothing if there is none with this name and number of components
+  std::optional<std::vector<std::int64_t>> take_numbers(std::vector<MeshField>& fields, const char* name,
+                                                        std::size_t piece, int components = 1) const {
+    constexpr double too_large = 9007199254740992;  // 2^53: from here on, fields hold rounded numbers
+    const auto field = std::find_if(fields.begin(), fields.end(), [&](const MeshField& f) {
+      return f.name == name && f.components == components;
+    });
+    if (field == fields.end()) return {};
+    const auto bad = std::find_if(field->values.begin(), field->values.end(),
+                                  [&](double value) { return std::abs(value) >= too_large; });
+    if (bad != field->values.end())
+      throw InputError(path_ + ": piece " + std::to_string(piece) + " (" + files_[piece] + "): item " +
+                       std::to_string((bad - field->values.begin()) / components) + " of " + in_quotes(name) +
+                       " is not between -2^53 and 2^53; number the mesh anew");
+    if (!field->integer) return {};
+    std::vector<std::int64_t> numbers;
+    numbers.reserve(field->values.size());
+    for (const double value : field->values) numbers.push_back(static_cast<std::int64_t>(value));
+    fields.erase(field);
+    return numbers;
+  }
+
+  /// Refuses copies of a piece before more of them fill the memory; join_pieces() compares all tets.
+  void check_own_tets(const ReadPiece& piece, std::size_t number) {
+    std::optional<std::int64_t> first;
+    for (std::size_t t = 0; t < piece.tets.size(); ++t)
+      if (!piece.tet_ghosts[t]) first = std::min(first.value_or(piece.tet_numbers[t]), piece.tet_numbers[t]);
+    if (!first) return;
+    const auto [known, added] = first_tets_.emplace(*first, number);
+    if (!added)
+      throw InputError(path_ + ": piece " + std::to_string(number) + " (" + files_[number] +
+                       "): tet number " + std::to_string(*first) + " is its own, and also that of piece " +
+                       std::to_string(known->second) + " (" + files_[known->second] +
+                       "); write the pieces again");
+  }
+
+  /// \throws OutputError if there is no memory for this many bytes more
+  void require(double bytes) const {
+    require_memory(held_ + bytes, "the pieces of " + path_, "read them on a larger machine");
   }
 
   static bool read_tets(const VtuData& data, pugi::xml_node node, ReadPiece& piece) {
@@ -222,7 +287,9 @@ class NumberedPieces {
   const std::string& path_;
   const FileReader& read_file_;
   std::vector<ReadPiece> pieces_;
-  bool described_ = false;  ///< the next three are those of a piece
+  double held_ = 0;                                 ///< memory of these, bytes
+  std::map<std::int64_t, std::size_t> first_tets_;  ///< smallest own tet of each piece that has one
+  bool described_ = false;                          ///< the next three are those of a piece
   std::string material_names_, face_group_names_;
   std::optional<WholeCounts> whole_;
   std::vector<std::string> dataset_arrays_;
@@ -234,8 +301,10 @@ class NumberedPieces {
 ReadTetMesh read_pvtu(const std::string& path, const ReadTetMeshOptions& options,
                       const FileReader& read_file) {
   const std::vector<std::string> files = piece_files(read_file(path), path);
-  NumberedPieces numbered(files, path, read_file);
-  if (numbered.read()) return numbered.join(options);
+  {
+    NumberedPieces numbered(files, path, read_file);
+    if (numbered.read()) return numbered.join(options);
+  }  // frees its pieces
   return read_vtu_files(files, path, options, read_file);
 }
 

@@ -17,7 +17,9 @@ namespace tetwright {
 /// take_triangles()). Pieces without these numbers are joined as read_vtu() joins those of one file.
 /// \throws InputError, with the piece and the number, if a tet is in two pieces or in none, a number is twice
 ///   in a piece, a ghost differs from its owner's tet, or pieces give a point different coordinates or
-///   values; and in the cases of read_vtu()
+///   values; if a number is not between -2^53 and 2^53, a piece is named twice, or by a path that is absolute
+///   or has a part ".."; and in the cases of read_vtu()
+/// \throws OutputError if the numbered pieces need more than available_memory()
 /// \param read_file reads all of these files
 ReadTetMesh read_pvtu(const std::string& path, const ReadTetMeshOptions& options,
                       const FileReader& read_file);

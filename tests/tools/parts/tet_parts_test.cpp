@@ -13,6 +13,7 @@
 #include "tests/common/small_meshes.h"
 #include "tests/simplify/meshes.h"
 #include "tetwright/error.h"
+#include "tetwright/progress.h"
 #include "tetwright/resources.h"
 #include "tools/parts/part_balance.h"
 #include "tools/parts/scotch_graph.h"
@@ -49,6 +50,50 @@ TEST(TetParts, TheResultDoesNotDependOnThreads) {
   with_threads(1, [&] { one = partition_tets(mesh, 7); });
   with_threads(2, [&] { two = partition_tets(mesh, 7); });
   EXPECT_EQ(one.part_of, two.part_of);
+}
+
+TEST(TetParts, ManyPartsAreEvenAndCutFewFacesToo) {
+  const TetMesh mesh = block(16);
+  for (const PartNumber parts : {257U, 300U, 999U}) {
+    SCOPED_TRACE(parts);
+    TetPartition partition, again;
+    with_threads(1, [&] { partition = partition_tets(mesh, parts); });
+    with_threads(2, [&] { again = partition_tets(mesh, parts); });
+    EXPECT_EQ(partition.part_of, again.part_of);
+    const PartitionStatistics statistics = partition_statistics(mesh, partition);
+    const double tets = static_cast<double>(mesh.tets.size());
+    const auto most =
+        static_cast<std::size_t>(std::max((1 + max_part_imbalance) * tets / parts, std::ceil(tets / parts)));
+    std::size_t pieces = 0;
+    for (const PartSize& part : statistics.parts) {
+      EXPECT_GE(part.tets, 1u);
+      EXPECT_LE(part.tets, most);
+      pieces += part.pieces;
+    }
+    EXPECT_LT(static_cast<double>(pieces), 1.1 * parts);
+    const double cells = 16.0 * 16 * 16 / parts;
+    EXPECT_LT(static_cast<double>(statistics.cut_faces),
+              1.5 * 12 * std::cbrt(cells) * std::cbrt(cells) * parts / 2);
+  }
+}
+
+TEST(TetParts, CancellationStopsThem) {
+  Progress progress;
+  progress.cancel();
+  EXPECT_THROW((void)partition_tets(block(2), 2, &progress), Interrupted);
+}
+
+TEST(TetClusters, ASubgraphKeepsWeightsAndInnerEdges) {
+  // A square of the vertices 0 to 3 with a diagonal from 0 to 2.
+  const WeightedGraph graph{.starts = {0, 3, 5, 8, 10},
+                            .neighbours = {1, 2, 3, 0, 2, 0, 1, 3, 0, 2},
+                            .edge_weights = {5, 6, 7, 5, 8, 6, 8, 9, 7, 9},
+                            .vertex_weights = {1, 2, 3, 4}};
+  const WeightedGraph part = subgraph(graph, {0, 2, 3});
+  EXPECT_EQ(part.starts, (std::vector<std::int32_t>{0, 2, 4, 6}));
+  EXPECT_EQ(part.neighbours, (std::vector<std::int32_t>{1, 2, 0, 2, 0, 1}));
+  EXPECT_EQ(part.edge_weights, (std::vector<std::int32_t>{6, 7, 6, 9, 7, 9}));
+  EXPECT_EQ(part.vertex_weights, (std::vector<std::int32_t>{1, 3, 4}));
 }
 
 TEST(TetParts, TheThreadKeepsItsProcessors) {

@@ -44,7 +44,7 @@ void write_result(Prepared& result, CommandRun& run) {
   result.field.reset();  // frees memory for writing the mesh
   std::optional<TetPartition> partition;
   if (line.outputs.parts > 0) {
-    partition = partition_tets(result.mesh, line.outputs.parts);
+    partition = partition_tets(result.mesh, line.outputs.parts, &run.progress);
     run.parts = partition_statistics(result.mesh, *partition);
   }
   if (line.outputs.no_boundary)

@@ -254,6 +254,65 @@ TEST_F(Pvtu, PiecesOfOtherProgramsAreJoinedByCoordinates) {
   EXPECT_EQ(read.mesh.tets.size(), 2u);
 }
 
+TEST_F(Pvtu, APieceIsNamedOnce) {
+  write(rich_mesh(), 2);
+  const std::string good = contents(f / "m.pvtu"), second = "m_1.vtu";
+  for (const std::string again : {"m_0.vtu", "./m_0.vtu", ".//m_0.vtu"}) {
+    put(f / "m.pvtu", std::string(good).replace(good.find(second), second.size(), again));
+    expect_error({"pieces 0 and 1 are the same file", again});
+  }
+}
+
+TEST_F(Pvtu, CopiesOfAPieceAreRefused) {
+  write(rich_mesh(), 3);
+  put(f / "m_1.vtu", contents(f / "m_0.vtu"));
+  std::filesystem::remove(f / "m_2.vtu");  // is not read any more
+  expect_error({"piece 1", "m_1.vtu", "tet number 0 is its own", "piece 0", "m_0.vtu"});
+}
+
+TEST_F(Pvtu, ManyPiecesDoNotFillTheMemory) {
+  write(rich_mesh(), 3);
+  const MemoryLimit limit(1000);
+  EXPECT_THROW((void)read_tet_mesh(f / "m.pvtu"), OutputError);
+}
+
+TEST_F(Pvtu, PiecesOfOtherFoldersAreRefused) {
+  write(rich_mesh(), 2);
+  const std::string good = contents(f / "m.pvtu"), second = "m_1.vtu";
+  for (const std::string& other : {f / "m_1.vtu", std::string("../m_1.vtu"), std::string("a/../m_1.vtu")}) {
+    put(f / "m.pvtu", std::string(good).replace(good.find(second), second.size(), other));
+    expect_error({"piece 1", other, "is not a file in its folder"});
+  }
+}
+
+TEST_F(Pvtu, NumbersThatDoublesCannotHoldAreRefused) {
+  const auto piece = [](const std::string& tet, const std::string& node) {
+    return "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"4\" "
+           "NumberOfCells=\"1\"><Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" "
+           "format=\"ascii\">0 0 0  1 0 0  0 1 0  0 0 1</DataArray></Points><Cells><DataArray "
+           "type=\"Int32\" Name=\"connectivity\" format=\"ascii\">0 1 2 3</DataArray><DataArray "
+           "type=\"Int32\" Name=\"offsets\" format=\"ascii\">4</DataArray><DataArray type=\"UInt8\" "
+           "Name=\"types\" format=\"ascii\">10</DataArray></Cells><PointData><DataArray type=\"Int64\" "
+           "Name=\"GlobalNodeId\" format=\"ascii\">0 1 2 " +
+           node +
+           "</DataArray></PointData><CellData><DataArray type=\"Int64\" Name=\"GlobalCellId\" "
+           "format=\"ascii\">" +
+           tet + "</DataArray></CellData></Piece></UnstructuredGrid></VTKFile>";
+  };
+  put(f / "m.pvtu",
+      "<VTKFile type=\"PUnstructuredGrid\"><PUnstructuredGrid><Piece Source=\"a.vtu\"/>"
+      "</PUnstructuredGrid></VTKFile>");
+  const std::string largest = "9007199254740991";
+  put(f / "a.vtu", piece(largest, "-" + largest));
+  EXPECT_EQ(read_tet_mesh(f / "m.pvtu").mesh.tets.size(), 1u);
+  for (const std::string bad : {"9007199254740992", "-9007199254740993", "9223372036854775807"}) {
+    put(f / "a.vtu", piece(bad, "3"));
+    expect_error({"piece 0", "a.vtu", "item 0 of \"GlobalCellId\"", "2^53"});
+    put(f / "a.vtu", piece("0", bad));
+    expect_error({"piece 0", "item 3 of \"GlobalNodeId\"", "2^53"});
+  }
+}
+
 TEST_F(Pvtu, OtherFilesAreRefused) {
   for (const auto& [text, said] : std::initializer_list<std::pair<std::string, std::string>>{
            {"", "not XML"},
