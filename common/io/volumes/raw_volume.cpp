@@ -21,7 +21,7 @@ class RawVolumeSource final : public LabelSource {
  public:
   explicit RawVolumeSource(RawVolume volume)
       : LabelSource(std::move(volume.grid)),
-        file_(std::move(volume.file)),
+        file_(volume.file),
         offset_(volume.offset),
         format_(volume.format),
         each_(voxel_bytes(format_.type)) {

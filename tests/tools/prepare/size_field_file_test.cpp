@@ -33,9 +33,10 @@ TEST(SizeFieldFile, OtherExtensionsAreRefused) {
     check_size_field_path("a.nrrd");
     ADD_FAILURE();
   } catch (const UsageError& e) {
-    EXPECT_STREQ(e.what(),
-                 "a.nrrd: unknown extension \".nrrd\"; edge lengths are read from .vtu .msh .vtk .xdmf .node "
-                 ".ele .ply .vtp .vdb");
+    EXPECT_STREQ(
+        e.what(),
+        "a.nrrd: unknown extension \".nrrd\"; edge lengths are read from .vtu .pvtu .msh .vtk .xdmf .node "
+        ".ele .ply .vtp .vdb");
   }
 }
 
