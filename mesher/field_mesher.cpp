@@ -259,10 +259,10 @@ FieldMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   if (const WallChanges* walls = field->wall_changes()) {
     std::shared_ptr<const MaterialField> as_is = walls->with_true_walls();
     // Points on sheets next to thin walls stay.
-    std::vector<std::uint8_t> on_interface = cut.on_interface;
+    std::vector<std::uint8_t> with_sheets = cut.on_interface;
     if (sheeted) cut.on_interface = on_interfaces_without_sheets(cut, *sheeted);
     report.thickened = thickened_report(recover_thin_walls(cut, *walls, *as_is), field->frame());
-    cut.on_interface = std::move(on_interface);
+    cut.on_interface = std::move(with_sheets);
     field = std::move(as_is);
   }
   if (sheeted) {

@@ -113,7 +113,8 @@ class Mover {
     for (std::size_t k = 0; k < list.size(); ++k) points[k] = candidate(list[k]).point;
     std::vector<std::uint8_t> done(list.size(), 0);
     run_groups(points, starts, [&](std::size_t k, FieldSampler& sampler) -> bool {
-      return done[k] = work(list[k], sampler);
+      done[k] = work(list[k], sampler);
+      return done[k];
     });
     std::vector<Index> left;
     for (std::size_t k = 0; k < list.size(); ++k)

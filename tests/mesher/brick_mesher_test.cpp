@@ -81,6 +81,7 @@ std::vector<BrickMesh> confirmed(const BrickMesher& mesher, const std::vector<Ce
   // Small loops would wait for each other's threads.
   const ThreadLimit one(1);
   std::vector<BrickMesh> bricks;
+  bricks.reserve(boxes.size());
   for (const CellBox& box : boxes) bricks.push_back(mesher.mesh(box, mesher.usual_halo(), nullptr));
   tally.bricks += bricks.size();
   for (std::vector<std::size_t> again; !(again = unconfirmed_bricks(bricks)).empty();)
@@ -135,6 +136,7 @@ LabelInput grains(const std::array<int, 3>& size, int count, std::uint64_t seed,
                   const Vec3& origin = Vec3::Zero()) {
   Random random(seed);
   std::vector<Vec3> centres;
+  centres.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i)
     centres.emplace_back(random.uniform() * size[0], random.uniform() * size[1], random.uniform() * size[2]);
   return make_labels(

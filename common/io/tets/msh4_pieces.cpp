@@ -310,7 +310,7 @@ std::vector<std::string> files_of_msh_pieces(const std::string& path, PartNumber
   const std::string stem = (name.parent_path() / name.stem()).string(), extension = name.extension().string();
   std::vector<std::string> files;
   for (PartNumber part = 0; part < parts; ++part)
-    files.push_back(stem + "_" + std::to_string(part + 1) + extension);
+    files.push_back(std::string(stem).append("_").append(std::to_string(part + 1)).append(extension));
   return files;
 }
 

@@ -32,7 +32,7 @@ inline std::vector<MaterialTag> box_of(const LabelVolume& volume, const VoxelInd
   for (int z = low[2]; z < high[2]; ++z)
     for (int y = low[1]; y < high[1]; ++y)
       for (int x = low[0]; x < high[0]; ++x)
-        out.push_back(volume.labels[static_cast<std::size_t>((z * volume.size[1] + y) * volume.size[0] + x)]);
+        out.push_back(volume.labels[(static_cast<std::size_t>(z) * volume.size[1] + y) * volume.size[0] + x]);
   return out;
 }
 
