@@ -61,15 +61,6 @@ std::vector<MortonKey> within(const std::vector<MortonKey>& keys, const CellBox&
   return found;
 }
 
-CellBox at_level(const CellBox& finest, int level) {
-  CellBox cells;
-  for (int a = 0; a < 3; ++a) {
-    cells.low[a] = finest.low[a] >> level;
-    cells.high[a] = (finest.high[a] + (1 << level) - 1) >> level;
-  }
-  return cells;
-}
-
 /// Enlarges a box of root cells on all sides, as far as the frame permits.
 CellBox enlarged(const CellBox& box, int by, const GridFrame& frame) {
   const int root = 1 << frame.root_level;

@@ -21,6 +21,16 @@ struct CellBox {
   bool operator==(const CellBox&) const = default;
 };
 
+/// The cells of an octree's level, with edges of 2^level finest cells, that overlap a box of finest cells.
+inline CellBox at_level(const CellBox& finest, int level) {
+  CellBox cells;
+  for (int a = 0; a < 3; ++a) {
+    cells.low[a] = finest.low[a] >> level;
+    cells.high[a] = (finest.high[a] + (1 << level) - 1) >> level;
+  }
+  return cells;
+}
+
 /// Position and size of the grid of finest cells.
 ///
 /// All of mesher/ works in *grid coordinates*: the unit is one finest cell, signed distances and corners of

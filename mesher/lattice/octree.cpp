@@ -12,16 +12,6 @@ namespace tetwright {
 
 namespace {
 
-/// The cells of a level that overlap a box given in finest cells.
-CellBox at_level(const CellBox& finest, int level) {
-  CellBox cells;
-  for (int a = 0; a < 3; ++a) {
-    cells.low[a] = finest.low[a] >> level;
-    cells.high[a] = (finest.high[a] + (1 << level) - 1) >> level;
-  }
-  return cells;
-}
-
 /// Appends the parents (level l + 1) that must be split because the cell `key` of level l is split: its own
 /// parent, and the parents of its neighbours across faces and edges, since these must exist as cells of level
 /// l.
