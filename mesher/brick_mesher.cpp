@@ -5,9 +5,9 @@
 #include <array>
 #include <bit>
 #include <optional>
-#include <tuple>
 #include <utility>
 
+#include "common/mesh/point_joining.h"
 #include "common/parallel/parallel_sort.h"
 #include "mesher/cut/cutting.h"
 #include "mesher/cut/vertex_snapping.h"
@@ -119,82 +119,32 @@ CutMesh own_part(const CutMesh& cut, std::vector<std::uint8_t>& shared) {
   return own;
 }
 
-/// The bricks of a frame in Morton order.
-std::vector<CellBox> bricks_of(const GridFrame& frame, int side) {
-  std::array<int, 3> counts;
-  for (int a = 0; a < 3; ++a) counts[a] = (frame.cells[a] + side - 1) / side;
-  std::vector<MortonKey> keys;
-  for (int z = 0; z < counts[2]; ++z)
-    for (int y = 0; y < counts[1]; ++y)
-      for (int x = 0; x < counts[0]; ++x) keys.push_back(morton_encode(x, y, z));
-  std::sort(keys.begin(), keys.end());
-  std::vector<CellBox> bricks;
-  for (const MortonKey key : keys) {
-    const std::array<int, 3> at = morton_decode(key);
-    CellBox& brick = bricks.emplace_back();
-    for (int a = 0; a < 3; ++a) {
-      brick.low[a] = at[a] * side;
-      brick.high[a] = std::min(brick.low[a] + side, frame.cells[a]);
-    }
-  }
-  return bricks;
-}
-
 /// Joins the bricks' meshes at their shared points, which have equal coordinates, and frees them.
 CutMesh joined(std::vector<BrickMesh> bricks) {
-  struct SharedPoint {
-    std::array<std::uint64_t, 3> bits;
-    std::uint32_t brick;
-    Index point;
-  };
-  std::vector<SharedPoint> shared;
+  std::vector<PiecePoints> pieces;
   std::size_t tets = 0;
-  for (std::uint32_t b = 0; b < bricks.size(); ++b) {
-    const BrickMesh& brick = bricks[b];
+  for (const BrickMesh& brick : bricks) {
+    pieces.push_back({brick.mesh.points, brick.shared});
     tets += brick.mesh.tets.size();
-    for (Index p = 0; p < brick.shared.size(); ++p)
-      if (brick.shared[p]) {
-        const Vec3& at = brick.mesh.points[p];
-        shared.push_back({{std::bit_cast<std::uint64_t>(at[0]), std::bit_cast<std::uint64_t>(at[1]),
-                           std::bit_cast<std::uint64_t>(at[2])},
-                          b,
-                          p});
-      }
   }
-  parallel_sort(shared, [](const SharedPoint& a, const SharedPoint& b) {
-    return std::tie(a.bits, a.brick) < std::tie(b.bits, b.brick);
-  });
-  // The brick and point in which each shared point comes first.
-  std::vector<std::vector<std::pair<Index, std::size_t>>> first(bricks.size());
-  for (std::size_t i = 0, j; i < shared.size(); i = j)
-    for (j = i; j < shared.size() && shared[j].bits == shared[i].bits; ++j)
-      first[shared[j].brick].emplace_back(shared[j].point, i);
+  JoinedPoints points = join_points(pieces);
   CutMesh all;
-  std::size_t points = 0;
-  for (const BrickMesh& brick : bricks) points += brick.mesh.points.size();
-  all.points.reserve(points);
-  all.on_interface.reserve(points);
+  all.points.resize(points.count);
+  all.on_interface.resize(points.count);
   all.tets.reserve(tets);
   all.regions.reserve(tets);
-  std::vector<Index> number_of_first(shared.size(), no_index);
   for (std::size_t b = 0; b < bricks.size(); ++b) {
-    BrickMesh brick = std::move(bricks[b]);
-    std::vector<std::size_t> place(brick.mesh.points.size(), shared.size());
-    for (const auto& [point, i] : first[b]) place[point] = i;
-    std::vector<Index> number(brick.mesh.points.size());
-    for (std::size_t p = 0; p < number.size(); ++p) {
-      const bool known = place[p] < shared.size() && number_of_first[place[p]] != no_index;
-      number[p] = known ? number_of_first[place[p]] : static_cast<Index>(all.points.size());
-      if (known) continue;
-      if (place[p] < shared.size()) number_of_first[place[p]] = number[p];
-      all.points.push_back(brick.mesh.points[p]);
-      all.on_interface.push_back(brick.mesh.on_interface[p]);
+    const CutMesh brick = std::move(bricks[b].mesh);
+    const std::vector<Index> numbers = std::move(points.numbers[b]);
+    for (std::size_t p = 0; p < numbers.size(); ++p) {
+      all.points[numbers[p]] = brick.points[p];
+      all.on_interface[numbers[p]] = brick.on_interface[p];
     }
-    for (Tet tet : brick.mesh.tets) {
-      for (Index& v : tet) v = number[v];
+    for (Tet tet : brick.tets) {
+      for (Index& v : tet) v = numbers[v];
       all.tets.push_back(tet);
     }
-    all.regions.insert(all.regions.end(), brick.mesh.regions.begin(), brick.mesh.regions.end());
+    all.regions.insert(all.regions.end(), brick.regions.begin(), brick.regions.end());
   }
   return all;
 }
@@ -216,6 +166,27 @@ BrickMesher::BrickMesher(VolumeField volume, const MesherOptions& options, Meshe
 int BrickMesher::usual_halo() const {
   const int cells = CellTuning::Bricks::halo << field_->refinement();
   return (cells + root() - 1) / root() * root();
+}
+
+std::vector<CellBox> BrickMesher::bricks(int side) const {
+  TETWRIGHT_CHECK(side >= root() && std::has_single_bit(static_cast<unsigned>(side)));
+  std::array<int, 3> counts;
+  for (int a = 0; a < 3; ++a) counts[a] = (frame().cells[a] + side - 1) / side;
+  std::vector<MortonKey> keys;
+  for (int z = 0; z < counts[2]; ++z)
+    for (int y = 0; y < counts[1]; ++y)
+      for (int x = 0; x < counts[0]; ++x) keys.push_back(morton_encode(x, y, z));
+  std::sort(keys.begin(), keys.end());
+  std::vector<CellBox> bricks;
+  for (const MortonKey key : keys) {
+    const std::array<int, 3> at = morton_decode(key);
+    CellBox& brick = bricks.emplace_back();
+    for (int a = 0; a < 3; ++a) {
+      brick.low[a] = at[a] * side;
+      brick.high[a] = std::min(brick.low[a] + side, frame().cells[a]);
+    }
+  }
+  return bricks;
 }
 
 BrickMesh BrickMesher::mesh(const CellBox& brick, int halo, Progress* progress) const {
@@ -244,8 +215,7 @@ BrickMesh BrickMesher::mesh(const CellBox& brick, int halo, Progress* progress) 
       lattice_tets(*octree, points, far.empty() ? nullptr : &far, field.refinement(), &brick, &owned);
   if (progress) progress->throw_if_stopped();
   BrickMesh made;
-  made.brick = brick;
-  made.halo = halo;
+  made.border = {brick, halo, {}};
   for (std::size_t i = 0; i < octree->size(); ++i)
     made.leaves += brick.contains(morton_decode(octree->leaf(i).key));
   octree.reset();
@@ -261,25 +231,25 @@ BrickMesh BrickMesher::mesh(const CellBox& brick, int halo, Progress* progress) 
   // Its own progress would hide that of the bricks.
   snap_vertices(lattice, field, nullptr);
   if (progress) progress->throw_if_stopped();
-  made.seam = recorder.finish();
+  made.border.seam = recorder.finish();
   lattice.stars.forget_tets();
   drop_distant_tets(lattice);
   made.mesh = own_part(cut_lattice(std::move(lattice)), made.shared);
   return made;
 }
 
-std::vector<std::size_t> unconfirmed_bricks(const std::vector<BrickMesh>& bricks) {
+std::vector<std::size_t> unconfirmed_bricks(const std::vector<const BrickBorder*>& bricks) {
   struct Offer {
     SeamPoint point;
     std::size_t brick;
   };
   std::vector<Offer> offers;
   for (std::size_t b = 0; b < bricks.size(); ++b)
-    for (const SeamPoint& p : bricks[b].seam.offered) offers.push_back({p, b});
+    for (const SeamPoint& p : bricks[b]->seam.offered) offers.push_back({p, b});
   parallel_sort(offers, [](const Offer& a, const Offer& b) { return a.point.key < b.point.key; });
   std::vector<std::uint8_t> doubtful(bricks.size(), 0);
   for (std::size_t b = 0; b < bricks.size(); ++b)
-    for (const SeamPoint& p : bricks[b].seam.needed) {
+    for (const SeamPoint& p : bricks[b]->seam.needed) {
       const auto offer = std::lower_bound(offers.begin(), offers.end(), p.key,
                                           [](const Offer& o, MortonKey key) { return o.point.key < key; });
       const bool offered = offer != offers.end() && offer->point.key == p.key;
@@ -287,7 +257,7 @@ std::vector<std::size_t> unconfirmed_bricks(const std::vector<BrickMesh>& bricks
       doubtful[b] = 1;
       // The brick of the point may not even know that others read it.
       for (std::size_t other = 0; other < bricks.size(); ++other)
-        if (touches(bricks[other].brick, p.key)) doubtful[other] = 1;
+        if (touches(bricks[other]->brick, p.key)) doubtful[other] = 1;
     }
   std::vector<std::size_t> unconfirmed;
   for (std::size_t b = 0; b < bricks.size(); ++b)
@@ -295,37 +265,41 @@ std::vector<std::size_t> unconfirmed_bricks(const std::vector<BrickMesh>& bricks
   return unconfirmed;
 }
 
-BrickedMesh BrickMesher::mesh_all(int side, MesherReport& report, Progress* progress) const {
-  TETWRIGHT_CHECK(side >= root() && std::has_single_bit(static_cast<unsigned>(side)));
-  std::vector<BrickMesh> bricks;
-  const auto again = [&](std::size_t done, std::size_t of) {
-    if (progress) progress->update(static_cast<double>(done) / static_cast<double>(of));
-  };
-  const std::vector<CellBox> boxes = bricks_of(frame(), side);
-  for (const CellBox& box : boxes) {
-    bricks.push_back(mesh(box, usual_halo(), progress));
-    again(bricks.size(), boxes.size());
-  }
-  BrickedMesh made;
-  made.bricks = bricks.size();
-  const int whole = *std::max_element(frame().cells.begin(), frame().cells.end());
-  for (std::vector<std::size_t> doubtful; !(doubtful = unconfirmed_bricks(bricks)).empty();) {
-    const std::size_t before = made.repeated;
+std::size_t for_each_brick(const BrickMesher& mesher, const std::vector<CellBox>& boxes,
+                           const std::function<const BrickBorder*(std::size_t, int)>& make) {
+  std::vector<const BrickBorder*> borders;
+  for (std::size_t b = 0; b < boxes.size(); ++b) borders.push_back(make(b, mesher.usual_halo()));
+  const std::array<int, 3>& cells = mesher.frame().cells;
+  const int whole = *std::max_element(cells.begin(), cells.end());
+  std::size_t repeated = 0;
+  for (std::vector<std::size_t> doubtful; !(doubtful = unconfirmed_bricks(borders)).empty();) {
+    const std::size_t before = repeated;
     for (const std::size_t b : doubtful) {
-      if (bricks[b].halo >= whole) continue;  // only its neighbours can be wrong
-      bricks[b] = mesh(bricks[b].brick, std::min(2 * bricks[b].halo, whole), progress);
-      ++made.repeated;
+      if (borders[b]->halo >= whole) continue;  // only its neighbours can be wrong
+      borders[b] = make(b, std::min(2 * borders[b]->halo, whole));
+      ++repeated;
     }
-    TETWRIGHT_CHECK(made.repeated > before);
+    TETWRIGHT_CHECK(repeated > before);
   }
-  for (const BrickMesh& brick : bricks) {
-    report.lattice_tets += brick.lattice_tets;
-    report.isolated_vertices += brick.isolated_vertices;
-    report.cells += brick.leaves;
+  return repeated;
+}
+
+BrickedMesh BrickMesher::mesh_all(int side, MesherReport& report, Progress* progress) const {
+  const std::vector<CellBox> boxes = bricks(side);
+  std::vector<BrickMesh> made(boxes.size());
+  BrickedMesh all;
+  all.bricks = made.size();
+  all.repeated = for_each_brick(*this, boxes, [&](std::size_t b, int halo) {
+    made[b] = mesh(boxes[b], halo, progress);
+    if (progress) progress->update(static_cast<double>(b + 1) / static_cast<double>(made.size()));
+    return &made[b].border;
+  });
+  for (BrickMesh& brick : made) {
+    brick.add_to(report);
+    brick.border.seam = {};
   }
-  for (BrickMesh& brick : bricks) brick.seam = {};
-  made.mesh = joined(std::move(bricks));
-  return made;
+  all.mesh = joined(std::move(made));
+  return all;
 }
 
 }  // namespace tetwright

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -16,15 +17,26 @@
 
 namespace tetwright {
 
-/// The part of a volume's dense mesh that belongs to a brick.
-struct BrickMesh {
+/// A brick with what tells whether its mesh is that of the whole volume.
+struct BrickBorder {
   CellBox brick;
   int halo = 0;  ///< finest cells around the brick whose points were moved with its own
+  Seam seam;
+};
+
+/// The part of a volume's dense mesh that belongs to a brick.
+struct BrickMesh {
+  BrickBorder border;
   CutMesh mesh;  ///< the brick's tets, in the order of the whole mesh
   /// 1 for each point that a tet of another brick has, too.
   std::vector<std::uint8_t> shared;
-  Seam seam;
   std::size_t leaves = 0, lattice_tets = 0, isolated_vertices = 0;  ///< of the brick
+
+  void add_to(MesherReport& report) const {
+    report.lattice_tets += lattice_tets;
+    report.isolated_vertices += isolated_vertices;
+    report.cells += leaves;
+  }
 };
 
 /// The mesh of a volume from its bricks.
@@ -55,6 +67,9 @@ class BrickMesher {
   const std::shared_ptr<const MaterialField>& field() const { return field_; }
   /// Edge of a root cell, finest cells.
   int root() const { return 1 << frame().root_level; }
+  /// The volume's bricks in Morton order.
+  /// \param side finest cells: a power of two, at least a root cell
+  std::vector<CellBox> bricks(int side) const;
   /// Meshes a brick.
   /// \param brick finest cells, whole root cells; the last ones along an axis end at frame().cells
   /// \param halo finest cells, one root cell or more
@@ -65,7 +80,7 @@ class BrickMesher {
   int usual_halo() const;
   /// Meshes the whole volume by bricks, one after another. The mesh is the same for any size of bricks,
   /// including the order of points and tets.
-  /// \param side of bricks, finest cells: a power of two, at least a root cell
+  /// \param side as for bricks()
   /// \param report receives the numbers of leaves, lattice tets and isolated vertices
   /// \throws Interrupted
   BrickedMesh mesh_all(int side, MesherReport& report, Progress* progress) const;
@@ -80,6 +95,14 @@ class BrickMesher {
 /// The bricks, by index, whose halo may not have sufficed: those that read a point of another brick which has
 /// another history there, and that other one.
 /// \param bricks all bricks of a volume
-std::vector<std::size_t> unconfirmed_bricks(const std::vector<BrickMesh>& bricks);
+std::vector<std::size_t> unconfirmed_bricks(const std::vector<const BrickBorder*>& bricks);
+
+/// Makes all bricks of a volume, and those again whose halo may not have sufficed.
+/// \param boxes of whole root cells, which fill the frame
+/// \param make meshes a brick, given its index and its halo; the result must stay valid until the brick is
+///   made again
+/// \return how many times a brick was made again
+std::size_t for_each_brick(const BrickMesher& mesher, const std::vector<CellBox>& boxes,
+                           const std::function<const BrickBorder*(std::size_t, int)>& make);
 
 }  // namespace tetwright

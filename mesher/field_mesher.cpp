@@ -182,12 +182,18 @@ std::vector<std::uint8_t> regions_there(const MaterialField& field, const std::v
   return there;
 }
 
+std::shared_ptr<const ReferenceSurface> reference_of(const TetMesh& mesh,
+                                                     std::shared_ptr<const MaterialField> field) {
+  const bool cut_off =
+      field->volume() && std::any_of(mesh.interfaces.begin(), mesh.interfaces.end(),
+                                     [](const InterfaceTriangle& t) { return t.patch != 0; });
+  if (cut_off) return std::make_shared<CutOffSurface>(mesh, std::move(field));
+  return field;
+}
+
 void set_mesh(CutMesh cut, std::shared_ptr<const MaterialField> field, DenseMesh& result) {
   result.mesh = to_input_units(std::move(cut), *field);
-  result.reference = field;
-  if (field->volume() && std::any_of(result.mesh.interfaces.begin(), result.mesh.interfaces.end(),
-                                     [](const InterfaceTriangle& t) { return t.patch != 0; }))
-    result.reference = std::make_shared<CutOffSurface>(result.mesh, field);
+  result.reference = reference_of(result.mesh, field);
   result.field = std::move(field);
 }
 

@@ -67,6 +67,11 @@ struct FieldMesh {
   std::optional<SheetParts> parts;  ///< if the field has sheets
 };
 
+/// The reference for simplify() of a mesh of the field.
+/// \param mesh its points and interfaces with their patches
+std::shared_ptr<const ReferenceSurface> reference_of(const TetMesh& mesh,
+                                                     std::shared_ptr<const MaterialField> field);
+
 /// Transforms a mesh of the field to input units, with its interfaces and its reference surface.
 /// \param cut lattice units
 void set_mesh(CutMesh cut, std::shared_ptr<const MaterialField> field, DenseMesh& result);

@@ -176,7 +176,8 @@ std::vector<InterfaceFace> Remesher::Impl::interface_faces_of(const std::vector<
 }
 
 SurfaceProjection Remesher::Impl::project_onto(const std::vector<Index>& points) {
-  return SurfaceProjection(mesh, interface_faces_of(near.tets_at(mesh, points)), options.reference,
+  return SurfaceProjection(mesh, mesh.positions(), interface_faces_of(near.tets_at(mesh, points)),
+                           options.reference,
                            [&](Index p) { return std::binary_search(points.begin(), points.end(), p); });
 }
 

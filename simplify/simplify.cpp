@@ -20,7 +20,6 @@
 #include "simplify/schedule/tet_count.h"
 #include "simplify/schedule/tuned_schedule.h"
 #include "simplify/schedule/whole_mesh.h"
-#include "simplify/tuning/merging_tuning.h"
 #include "simplify/tuning/tuning.h"
 #include "tetwright/error.h"
 #include "tetwright/mesh_quality.h"
@@ -34,7 +33,6 @@ namespace {
 using Closing = SimplifyTuning::Closing;
 using Features = SimplifyTuning::Features;
 using Improve = SimplifyTuning::Improve;
-using Merging = MergingTuning;
 using Memory = SimplifyTuning::Memory;
 using TimeLimit = SimplifyTuning::TimeLimit;
 
@@ -58,15 +56,6 @@ void fit(Engine& engine, int sweeps, float floor) {
 /// First of the rising bounds.
 double first_bound(double min_solid_angle) {
   return std::max(Improve::min_first_bound, Closing::margin * min_solid_angle);
-}
-
-/// Validates the input of both calls before any work.
-void check(const TetMesh& mesh, const std::vector<std::uint8_t>& frozen, const std::string& name) {
-  if (mesh.tets.empty()) throw InputError(name, 0, "no tets in it");
-  check_arrays(mesh, frozen, name);
-  require_memory(Memory::program_bytes + Memory::bytes_per_tet * static_cast<double>(mesh.tets.size()),
-                 name + ": work on its " + std::to_string(mesh.tets.size()) + " tets",
-                 "free some, or use a machine or a container limit with more");
 }
 
 /// Number of tets that follows from target lengths, or that the bounds on edge lengths allow.
@@ -147,18 +136,6 @@ bool is_bounded(const SimplifyOptions& options) {
   return options.sizes || options.min_edge > 0 || std::isfinite(options.max_edge);
 }
 
-/// Coarsens the mesh in bulk if it has so many more tets than the target that this pays off and nothing but
-/// their number is asked for.
-void merge_points(Engine& engine, const SimplifyOptions& options) {
-  const auto ratio =
-      static_cast<double>(engine.mesh().live_tets()) / static_cast<double>(options.target_tets);
-  if (!(ratio >= Merging::min_ratio) || is_bounded(options) || options.tolerance > 0) return;
-  const double edge = engine.rules.objective.quality.ideal_edge;
-  engine.merge_points({.max_distance = Merging::max_distance_edges * edge,
-                       .max_deviation = Merging::max_deviation_edges * edge,
-                       .seed = options.seed});
-}
-
 /// The final improvement of the tuned schedule.
 ///
 /// \param target number of tets; 0: the current one.
@@ -222,7 +199,7 @@ void close(Engine& engine, const SimplifyOptions& options, std::size_t target, s
 
 TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report, Progress* progress) {
   check_options(options);
-  check(mesh, options.frozen, options.name);
+  check_mesh(mesh, options.frozen, options.name);
   if (out_of_time(progress)) return not_simplified(std::move(mesh), options, report, progress);
   const bool tuned = options.schedule == Schedule::tuned;
   const auto start = std::chrono::steady_clock::now();
@@ -232,7 +209,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
       std::move(mesh),
       {options.name, static_cast<double>(options.target_tets > 0 ? options.target_tets : first_count),
        options.beta, options.gamma, options.seed, options.batch_size, options.objective, options.reference,
-       options.frozen, options.fix_boundary, tuned},
+       options.frozen, options.fix_boundary, tuned, options.original},
       report, progress);
   std::size_t target = options.target_tets;
   if (is_bounded(options) && tuned) {
@@ -246,10 +223,11 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
   const bool built = done_in_time([&] {
     engine.throw_if_stopped();
     if (!tuned) return;
-    engine.input_samples().keep_surface(options.surface, options.tolerance > 0);
+    engine.input_samples().keep_surface(options.surface, options.original, options.tolerance > 0);
     engine.throw_if_stopped();
     // From here on the mesh is changed, so time is asked for in the loop only.
-    merge_points(engine, options);
+    if (!is_bounded(options) && options.tolerance == 0 && !options.original)
+      merge_in_bulk(engine, static_cast<double>(options.target_tets), options.seed);
     engine.compact();
   });
   const double build = seconds_since(start);
@@ -369,7 +347,7 @@ TetMesh improve_bad_regions(TetMesh&& mesh, const ImproveOptions& options, std::
 }  // namespace
 
 TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* report, Progress* progress) {
-  check(mesh, options.frozen, options.name);
+  check_mesh(mesh, options.frozen, options.name);
   if (out_of_time(progress)) return unchanged(std::move(mesh), report);
   const auto start = std::chrono::steady_clock::now();
   const LoopTimes loops_before = loop_times();

@@ -105,8 +105,8 @@ MeshStatistics mesh_statistics(const TetMesh& mesh, double threshold) {
   MeshStatistics out;
   out.tets = mesh.tets.size();
   out.points = mesh.points.size();
-  if (mesh.tets.empty()) return out;
   count_interfaces(mesh, out);
+  if (mesh.tets.empty()) return out;
 
   std::vector<std::uint8_t> bin_of_angle(mesh.tets.size());
   std::vector<PartStatistics> parts((mesh.tets.size() + statistics_grain - 1) / statistics_grain);

@@ -16,7 +16,7 @@ using Volumes = SimplifyTuning::Volumes;
 
 ConstrainedMesh::ConstrainedMesh(TetMesh&& input, const std::string& name,
                                  const std::vector<std::uint8_t>& frozen, bool fix_boundary,
-                                 bool keep_volumes)
+                                 bool keep_volumes, const std::map<MaterialTag, double>* volumes)
     : mesh(std::move(input), name) {
   if (!(mesh.total_volume() > 0))
     throw InputError(
@@ -24,7 +24,7 @@ ConstrainedMesh::ConstrainedMesh(TetMesh&& input, const std::string& name,
         "the volumes of its tets add up to nothing or less; turn the tets so that they are positive");
   if (!frozen.empty()) mesh.freeze(frozen);
   if (fix_boundary) mesh.freeze_interfaces();
-  if (keep_volumes) ledger.open(mesh, Volumes::max_change);
+  if (keep_volumes) ledger.open(mesh, Volumes::max_change, volumes);
 }
 
 void ConstrainedMesh::keep_patches() {

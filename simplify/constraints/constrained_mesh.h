@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,9 +21,11 @@ struct ConstrainedMesh {
   /// \param frozen one value for each point, nonzero if frozen; empty: no point is frozen.
   /// \param fix_boundary freezes all points of the boundary and the interfaces.
   /// \param keep_volumes bounds the volume of each material for as long as this object exists.
+  /// \param volumes to be kept, by material, input units cubed; null: those of the mesh.
   /// \throws InputError if the sum of the tets' signed volumes is not positive.
   ConstrainedMesh(TetMesh&& input, const std::string& name, const std::vector<std::uint8_t>& frozen,
-                  bool fix_boundary, bool keep_volumes);
+                  bool fix_boundary, bool keep_volumes,
+                  const std::map<MaterialTag, double>* volumes = nullptr);
   ConstrainedMesh(const ConstrainedMesh&) = delete;
   ConstrainedMesh& operator=(const ConstrainedMesh&) = delete;
 

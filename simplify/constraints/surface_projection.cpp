@@ -18,27 +18,27 @@ ProjectionTree::Kind kind_of(RegionId first, RegionId second, PatchId patch) {
   return {std::min(first, second), std::max(first, second), patch};
 }
 
-/// Copies of the mesh points in use, renumbered.
+/// Copies of the points in use, renumbered.
 class PointCopies {
  public:
-  explicit PointCopies(const EditableMesh& mesh) : mesh_(mesh) {}
+  explicit PointCopies(std::span<const Vec3> from) : from_(from) {}
   Index number(Index p) {
     bool added;
     const std::uint32_t n = numbers_.number(p, added);
-    if (added) points.push_back(mesh_.position(p));
+    if (added) points.push_back(from_[p]);
     return n;
   }
   std::vector<Vec3> points;
 
  private:
-  const EditableMesh& mesh_;
+  std::span<const Vec3> from_;
   LocalNumbers numbers_;
 };
 
 }  // namespace
 
-SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector<InterfaceFace>& faces,
-                                     const ReferenceSurface* given,
+SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, std::span<const Vec3> positions,
+                                     const std::vector<InterfaceFace>& faces, const ReferenceSurface* given,
                                      const std::function<bool(Index)>& complete)
     : has_patches_(
           (!given || given->has_patches()) &&
@@ -49,7 +49,7 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
       given_(given),
       mesh_(&mesh) {
   if (!given_ || has_sheets_) {
-    PointCopies points(mesh);
+    PointCopies points(positions);
     std::vector<ProjectionTree::Item> triangles;
     triangles.reserve(faces.size());
     for (const InterfaceFace& f : faces) {
@@ -78,7 +78,7 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
   });
   parallel_sort(
       edges, [](const Edge& x, const Edge& y) { return x.key != y.key ? x.key < y.key : x.patch < y.patch; });
-  PointCopies points(mesh);
+  PointCopies points(positions);
   std::vector<ProjectionTree::Item> segments;
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t j = i + 1;
@@ -88,10 +88,10 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
     // A given surface with patches provides its own feature edges, but not those of sheets, nor where it
     // gives up creases.
     const auto is_own = [&] {
-      return !given_patches_ || sheet || lacks_creases((mesh.position(p) + mesh.position(q)) / 2);
+      return !given_patches_ || sheet || lacks_creases((positions[p] + positions[q]) / 2);
     };
     if ((j - i != 2 || (edges[i].patch != edges[i + 1].patch && is_own())) && complete(p) && complete(q) &&
-        (sheet || !given_has_curve(mesh, p, q, j - i != 2))) {
+        (sheet || !given_has_curve(positions[p], positions[q], j - i != 2))) {
       const Index a = points.number(p), b = points.number(q);
       segments.push_back({{a, b, b}, {}});
     }
@@ -108,11 +108,11 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, const std::vector
   curves_ = ProjectionTree(std::move(points.points), std::move(segments));
 }
 
-bool SurfaceProjection::given_has_curve(const EditableMesh& mesh, Index p, Index q, bool junction) const {
+bool SurfaceProjection::given_has_curve(const Vec3& p, const Vec3& q, bool junction) const {
   if (!given_patches_ || (junction && !given_->has_junctions())) return false;
-  const Vec3 &a = mesh.position(p), &b = mesh.position(q);
-  const double reach = SimplifyTuning::Projection::same_curve_share * (b - a).norm() / mesh.space().scale();
-  return given_->onto_crease(mesh.space().to_input((a + b) / 2), reach).has_value();
+  const WorkingSpace& space = mesh_->space();
+  const double reach = SimplifyTuning::Projection::same_curve_share * (q - p).norm() / space.scale();
+  return given_->onto_crease(space.to_input((p + q) / 2), reach).has_value();
 }
 
 std::optional<Vec3> SurfaceProjection::onto_surface(const Vec3& p, RegionId first, RegionId second,

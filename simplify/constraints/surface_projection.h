@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "common/geometry/projection_tree.h"
@@ -22,13 +23,16 @@ class SurfaceProjection {
   /// \param given reference surface, may be null; must outlive this object. If it has no patches, the patch
   ///   borders of the mesh are accurate to a cell only.
   SurfaceProjection(const EditableMesh& mesh, const ReferenceSurface* given)
-      : SurfaceProjection(mesh, mesh.interface_faces(), given, [](Index) { return true; }) {}
-  /// As above, restricted to these faces.
+      : SurfaceProjection(mesh, mesh.positions(), mesh.interface_faces(), given, [](Index) { return true; }) {
+  }
+  /// As above, with these faces instead of the mesh's.
   ///
+  /// \param points of the faces, by index.
   /// \param complete whether all interface faces at a point are among `faces`; junction curves are found only
   ///   between such points.
-  SurfaceProjection(const EditableMesh& mesh, const std::vector<InterfaceFace>& faces,
-                    const ReferenceSurface* given, const std::function<bool(Index)>& complete);
+  SurfaceProjection(const EditableMesh& mesh, std::span<const Vec3> points,
+                    const std::vector<InterfaceFace>& faces, const ReferenceSurface* given,
+                    const std::function<bool(Index)>& complete);
 
   /// Whether some face has a patch other than 0; false if the given surface has no patches. If true, planes
   /// and feature edges are kept exactly.
@@ -49,8 +53,8 @@ class SurfaceProjection {
   std::optional<Vec3> onto_corner(const Vec3& p, double max_distance) const;
 
  private:
-  /// Whether the given surface itself has the curve that a junction edge or patch border of the mesh follows.
-  bool given_has_curve(const EditableMesh& mesh, Index p, Index q, bool junction) const;
+  /// Whether the given surface itself has the curve that a junction edge or patch border follows.
+  bool given_has_curve(const Vec3& p, const Vec3& q, bool junction) const;
   /// The nearer of `own` and the given surface's answer, if that has patches.
   std::optional<Vec3> nearer(const Vec3& p, const std::optional<Vec3>& own, double max_distance,
                              std::optional<Vec3> (ReferenceSurface::*onto)(const Vec3&, double) const) const;

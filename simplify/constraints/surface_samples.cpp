@@ -60,6 +60,13 @@ std::vector<Place> spread_places(const ProjectionTree& surface, double area_each
   return places;
 }
 
+/// RepresentedSurface::reach().
+/// \param total_edge sum of the edge lengths of all triangles.
+double mean_reach(double total_edge, std::size_t triangles) {
+  return Samples::correspondence_edges * total_edge /
+         static_cast<double>(std::max<std::size_t>(1, 3 * triangles));
+}
+
 /// The mesh's boundary and interface triangles; kind[0] is the index in mesh.interface_faces().
 ProjectionTree faces_of(const EditableMesh& mesh) {
   std::vector<Vec3> points(mesh.point_slots(), Vec3::Zero());
@@ -87,8 +94,7 @@ RepresentedSurface::RepresentedSurface(const EditableMesh& mesh, const TriangleM
   double total_edge = 0;
   for (std::size_t i = 0; i < faces.size(); ++i)
     for (int k = 0; k < 3; ++k) total_edge += (corner(i, (k + 1) % 3) - corner(i, k)).norm();
-  reach_ = Samples::correspondence_edges * total_edge /
-           static_cast<double>(std::max<std::size_t>(1, 3 * faces.size()));
+  reach_ = mean_reach(total_edge, faces.size());
 
   std::vector<Vec3> points;
   std::vector<ProjectionTree::Item> items;
@@ -120,6 +126,20 @@ RepresentedSurface::RepresentedSurface(const EditableMesh& mesh, const TriangleM
     items.push_back({ids, {kind.low, kind.high, kind.patch}});
   }
   if (items.size() > given_items) triangles_ = ProjectionTree(std::move(points), std::move(items));
+}
+
+RepresentedSurface::RepresentedSurface(OriginalSurface original) {
+  std::vector<ProjectionTree::Item> items;
+  items.reserve(original.faces.size());
+  double total_edge = 0;
+  for (const InterfaceFace& f : original.faces) {
+    const Kind kind = kind_of(f.inside, f.across, f.patch);
+    items.push_back({f.ids, {kind.low, kind.high, kind.patch}});
+    for (int k = 0; k < 3; ++k)
+      total_edge += (original.points[f.ids[(k + 1) % 3]] - original.points[f.ids[k]]).norm();
+  }
+  reach_ = mean_reach(total_edge, items.size());
+  triangles_ = ProjectionTree(std::move(original.points), std::move(items));
 }
 
 void RepresentedSurface::find_hidden(const EditableMesh& mesh) {

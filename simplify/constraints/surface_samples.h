@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "common/geometry/projection_tree.h"
+#include "simplify/constraints/original_surface.h"
 #include "simplify/constraints/surface_grid.h"
 #include "simplify/mesh/editable_mesh.h"
 #include "tetwright/mesh_quality.h"
@@ -26,6 +27,8 @@ class RepresentedSurface {
   /// \param mesh before any operation.
   /// \param given triangles wound outwards, input units; may be null.
   RepresentedSurface(const EditableMesh& mesh, const TriangleMesh* given);
+  /// Uses the surface of the mesh from which this one was made.
+  explicit RepresentedSurface(OriginalSurface original);
 
   /// The regions on both sides of a triangle and its patch; unused for given triangles.
   struct Kind {

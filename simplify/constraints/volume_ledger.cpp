@@ -23,4 +23,21 @@ std::vector<double> region_volumes(const EditableMesh& mesh) {
   return volumes;
 }
 
+void VolumeLedger::open(const EditableMesh& mesh, double share,
+                        const std::map<MaterialTag, double>* initial) {
+  const std::vector<double> current = region_volumes(mesh);
+  const double scale = mesh.space().scale();
+  allowed_.clear();
+  net_.clear();
+  for (std::size_t r = 0; r < current.size(); ++r) {
+    double before = current[r];
+    if (initial) {
+      const auto found = initial->find(mesh.tag(static_cast<RegionId>(r)));
+      if (found != initial->end()) before = scale * scale * scale * found->second;
+    }
+    allowed_.push_back(std::fabs(share * before));
+    net_.push_back(current[r] - before);
+  }
+}
+
 }  // namespace tetwright

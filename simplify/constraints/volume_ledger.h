@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <map>
 #include <vector>
 
 #include "simplify/mesh/editable_mesh.h"
@@ -19,13 +20,11 @@ std::vector<double> region_volumes(const EditableMesh& mesh);
 /// operations, and many small losses add up: a simplified ball lies inside the original.
 class VolumeLedger {
  public:
-  /// Bounds the changes to the fraction `share` of the current volumes.
+  /// Bounds the changes to the fraction `share` of the initial volumes.
+  ///
+  /// \param initial by material, input units cubed; null: the current volumes.
   /// \pre No task runs.
-  void open(const EditableMesh& mesh, double share) {
-    allowed_ = region_volumes(mesh);
-    net_.assign(allowed_.size(), 0);
-    for (double& a : allowed_) a = std::fabs(share * a);
-  }
+  void open(const EditableMesh& mesh, double share, const std::map<MaterialTag, double>* initial = nullptr);
 
   /// Whether every change keeps its region within the bounds, or brings it nearer to them. Safe concurrently
   /// while no thread commits.

@@ -58,4 +58,13 @@ void check_arrays(const TetMesh& mesh, const std::vector<std::uint8_t>& frozen, 
                      std::to_string(mesh.points.size()) + " points; give one for each, or none");
 }
 
+void check_mesh(const TetMesh& mesh, const std::vector<std::uint8_t>& frozen, const std::string& name) {
+  using Memory = SimplifyTuning::Memory;
+  if (mesh.tets.empty()) throw InputError(name, 0, "no tets in it");
+  check_arrays(mesh, frozen, name);
+  require_memory(Memory::program_bytes + Memory::bytes_per_tet * static_cast<double>(mesh.tets.size()),
+                 name + ": work on its " + std::to_string(mesh.tets.size()) + " tets",
+                 "free some, or use a machine or a container limit with more");
+}
+
 }  // namespace tetwright

@@ -16,4 +16,10 @@ namespace tetwright {
 /// \throws UsageError if the size of `frozen` is wrong
 void check_arrays(const TetMesh& mesh, const std::vector<std::uint8_t>& frozen, const std::string& name);
 
+/// Checks that a caller's mesh has tets, that its arrays fit together, and that the memory suffices to work
+/// on it. Parallel.
+/// \throws InputError and UsageError as check_arrays(), InputError if there are no tets
+/// \throws OutputError if the memory does not suffice
+void check_mesh(const TetMesh& mesh, const std::vector<std::uint8_t>& frozen, const std::string& name);
+
 }  // namespace tetwright

@@ -3,6 +3,7 @@
 
 #include <utility>
 
+#include "simplify/constraints/original_surface.h"
 #include "simplify/tuning/tuning.h"
 #include "tetwright/resources.h"
 
@@ -13,11 +14,19 @@ namespace {
 using Grains = SimplifyTuning::Grains;
 using Slots = SimplifyTuning::Slots;
 
+SurfaceProjection projection_for(const EditableMesh& mesh, const Engine::Options& options) {
+  if (!options.original) return {mesh, options.reference};
+  const OriginalSurface original = surface_of(mesh, *options.original);
+  return {mesh, original.points, original.faces, options.reference, [](Index) { return true; }};
+}
+
 }  // namespace
 
 Engine::Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, Progress* progress)
-    : constrained_(std::move(mesh), options.name, options.frozen, options.fix_boundary, options.keep_volumes),
-      projection_(mesh_, options.reference),
+    : constrained_(std::move(mesh), options.name, options.frozen, options.fix_boundary, options.keep_volumes,
+                   options.original ? &options.original->volumes : nullptr),
+      first_tets_(options.original ? options.original->tets : mesh_.live_tets()),
+      projection_(projection_for(mesh_, options)),
       samples_(constrained_),
       runner_(mesh_, grid_, constrained_.ledger, options.seed, options.batch_size, progress),
       recorder_(mesh_, runner_, report, progress),

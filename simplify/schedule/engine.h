@@ -29,7 +29,8 @@ class Engine {
     const ReferenceSurface* reference;
     const std::vector<std::uint8_t>& frozen;
     bool fix_boundary;
-    bool keep_volumes = true;  ///< bounds them by a VolumeLedger
+    bool keep_volumes = true;                ///< bounds them by a VolumeLedger
+    const OriginalMesh* original = nullptr;  ///< SimplifyOptions::original
   };
   Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, Progress* progress);
   Engine(const Engine&) = delete;
@@ -53,7 +54,7 @@ class Engine {
   /// Coarsens the mesh in bulk: tetwright::merge_points().
   /// \pre No operation has run; before compact().
   void merge_points(const PointMerging& options);
-  /// Number of tets of the mesh as it came.
+  /// Number of tets of the mesh as it came, or of its original.
   std::size_t first_tets() const { return first_tets_; }
   /// Compacts the mesh and gives its triangles samples: InputSamples::assign().
   /// \pre input_samples().keep_surface() has been called.
@@ -83,7 +84,7 @@ class Engine {
   ConstrainedMesh constrained_;
   EditableMesh& mesh_ = constrained_.mesh;
   SurfaceGrid& grid_ = constrained_.grid;
-  const std::size_t first_tets_ = mesh_.live_tets();
+  const std::size_t first_tets_;
   SurfaceProjection projection_;
   InputSamples samples_;
   std::optional<EdgeSizes> sizes_;

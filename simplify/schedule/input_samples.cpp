@@ -9,9 +9,10 @@
 
 namespace tetwright {
 
-void InputSamples::keep_surface(const TriangleMesh* surface, bool measured) {
+void InputSamples::keep_surface(const TriangleMesh* surface, const OriginalMesh* original, bool measured) {
   const EditableMesh& mesh = constrained_.mesh;
-  surface_ = std::make_unique<RepresentedSurface>(mesh, surface);
+  surface_ = original ? std::make_unique<RepresentedSurface>(surface_of(mesh, *original))
+                      : std::make_unique<RepresentedSurface>(mesh, surface);
   if (measured) surface_->find_hidden(mesh);
 }
 

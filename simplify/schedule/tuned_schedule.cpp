@@ -13,6 +13,7 @@
 #include "simplify/operations/smoothing.h"
 #include "simplify/schedule/fitting_sweeps.h"
 #include "simplify/schedule/selection.h"
+#include "simplify/tuning/merging_tuning.h"
 #include "simplify/tuning/tuning.h"
 
 namespace tetwright {
@@ -20,6 +21,7 @@ namespace tetwright {
 namespace {
 
 using Closing = SimplifyTuning::Closing;
+using Merging = MergingTuning;
 using Schedules = SimplifyTuning::Schedules;
 using Tolerance = SimplifyTuning::Tolerance;
 using TunedLoop = SimplifyTuning::TunedLoop;
@@ -62,6 +64,11 @@ void begin_loop(BlockRules& rules) {
   rules.collapse.distance_weight = TunedLoop::distance_weight;
 }
 
+/// Logarithm of the ratio of a mesh's tets to the target, which must be above 0 even at the target.
+double log_ratio(double tets, double target) {
+  return portable_log(std::max(tets / target, 1 + tolerance::at_target));
+}
+
 /// Runs the block iteration down to a target.
 ///
 /// \param counted whether the target is the final one, not an intermediate stage towards as few tets as the
@@ -74,7 +81,7 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
   const auto target = static_cast<double>(loop_target);
   // Merging points has done the first part of the loop.
   const auto first_tets = static_cast<double>(counted ? engine.first_tets() : mesh.live_tets());
-  const double log_first = portable_log(std::max(first_tets / target, 1 + tolerance::at_target));
+  const double log_first = log_ratio(first_tets, target);
   const double max_error = Schedules::max_useful_error * std::max(1.0, options.gamma / 10);
   begin_loop(rules);
   double& error = *rules.error.max;
@@ -148,23 +155,41 @@ bool simplify_to(Engine& engine, const SimplifyOptions& options, std::size_t loo
 
 }  // namespace
 
-void run_light_schedule(Engine& engine, std::size_t target, int max_iterations) {
+void merge_in_bulk(Engine& engine, double target, std::uint64_t seed) {
+  if (!(static_cast<double>(engine.mesh().live_tets()) >= Merging::min_ratio * target)) return;
+  const double edge = engine.rules.objective.quality.ideal_edge;
+  engine.merge_points({.max_distance = Merging::max_distance_edges * edge,
+                       .max_deviation = Merging::max_deviation_edges * edge,
+                       .seed = seed});
+}
+
+void run_collapses(Engine& engine, double final_target, std::size_t loop_target, int max_iterations) {
   const EditableMesh& mesh = engine.mesh();
   BlockRules& rules = engine.rules;
   begin_loop(rules);
-  rules.count.min = target;
+  rules.count.min = loop_target;
   engine.rate_all();
+  const double log_first = log_ratio(static_cast<double>(engine.first_tets()), final_target);
   double percent = Schedules::percent_step;
-  for (int i = 0; i < max_iterations && mesh.live_tets() > target; ++i) {
+  for (int i = 0; i < max_iterations && mesh.live_tets() > loop_target; ++i) {
     engine.compact_if_sparse();
-    RoundRecorder::Round round(engine.recorder(), "simplify", *rules.error.max);
-    const auto before = static_cast<double>(mesh.live_tets());
-    collapse_block(engine, quality_cutoff(mesh, percent), target);
+    RoundRecorder::Round round(engine.recorder(), "coarsen", *rules.error.max);
+    IterationReport& it = round.report();
+    it.percent = percent;
+    it.tets_by_quality = tets_by_quality(mesh);
+    const auto before = static_cast<double>(it.tets_before);
+    const double log_now = log_ratio(before, final_target);
+    rules.acceptance.worse_probability =
+        Schedules::first_annealing * std::clamp(log_now / log_first, 0.0, 1.0);
+    const float limit = quality_cutoff(mesh, percent);
+    it.cutoff = portable_cbrt(limit);
+    collapse_block(engine, limit, loop_target);
     round.finish();
-    if (percent >= 100 && static_cast<double>(mesh.live_tets()) > (1 - TunedLoop::min_removed) * before)
-      break;
+    const double removed = 1 - static_cast<double>(mesh.live_tets()) / before;
+    if (removed < TunedLoop::min_removed && percent >= 100) break;
     percent = std::min(100.0, percent + Schedules::percent_step);
   }
+  rules.acceptance.worse_probability = 0;
 }
 
 void run_tuned_schedule(Engine& engine, const SimplifyOptions& options, std::size_t loop_target) {

@@ -290,6 +290,15 @@ struct SimplifyTuning {
     static constexpr double fit_above_utilization = 0.6;
   };
 
+  /// coarsen().
+  struct Coarsening {
+    /// Number of tets for each final one: where the tuned schedule begins to use samples. With 4, shapes at
+    /// former cuts are as good, but surfaces are farther from the original.
+    static constexpr double final_tets = TunedLoop::samples_below;
+    /// Tets that a frozen boundary face needs: its own, and one between it and its neighbours.
+    static constexpr std::size_t tets_for_frozen_face = 2;
+  };
+
   /// The tuned schedule with a tolerance (SimplifyOptions::tolerance), or without a count.
   struct Tolerance {
     /// Fraction of the tolerance allowed at samples in the loop, and in the final improvement, which needs

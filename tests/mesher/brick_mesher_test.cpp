@@ -80,15 +80,12 @@ struct Tally {
 std::vector<BrickMesh> confirmed(const BrickMesher& mesher, const std::vector<CellBox>& boxes, Tally& tally) {
   // Small loops would wait for each other's threads.
   const ThreadLimit one(1);
-  std::vector<BrickMesh> bricks;
-  bricks.reserve(boxes.size());
-  for (const CellBox& box : boxes) bricks.push_back(mesher.mesh(box, mesher.usual_halo(), nullptr));
+  std::vector<BrickMesh> bricks(boxes.size());
   tally.bricks += bricks.size();
-  for (std::vector<std::size_t> again; !(again = unconfirmed_bricks(bricks)).empty();)
-    for (const std::size_t b : again) {
-      ++tally.repeated;
-      bricks[b] = mesher.mesh(bricks[b].brick, 2 * bricks[b].halo, nullptr);
-    }
+  tally.repeated += for_each_brick(mesher, boxes, [&](std::size_t b, int halo) {
+    bricks[b] = mesher.mesh(boxes[b], halo, nullptr);
+    return &bricks[b].border;
+  });
   return bricks;
 }
 
@@ -212,13 +209,18 @@ TEST(BrickMesher, SameBytesForAnySideOfBricks) {
 }
 
 TEST(BrickMesher, BricksOfDifferentHistoriesAreNotConfirmed) {
-  std::vector<BrickMesh> bricks(3);
-  for (int b = 0; b < 3; ++b) bricks[static_cast<std::size_t>(b)].brick = {{8 * b, 0, 0}, {8 * b + 8, 8, 8}};
+  std::vector<BrickBorder> bricks(3);
+  std::vector<const BrickBorder*> borders;
+  for (int b = 0; b < 3; ++b) {
+    BrickBorder& border = bricks[static_cast<std::size_t>(b)];
+    border.brick = {{8 * b, 0, 0}, {8 * b + 8, 8, 8}};
+    borders.push_back(&border);
+  }
   const MortonKey in_second = morton_encode(20, 4, 4), at_border = morton_encode(16, 4, 4);
   bricks[1].seam.offered = {{in_second, 7}};
   const auto unconfirmed = [&](std::vector<SeamPoint> needed) {
     bricks[0].seam.needed = std::move(needed);
-    return unconfirmed_bricks(bricks);
+    return unconfirmed_bricks(borders);
   };
   using Numbers = std::vector<std::size_t>;
   EXPECT_EQ(unconfirmed({}), Numbers());

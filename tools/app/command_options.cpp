@@ -2,9 +2,11 @@
 #include "tools/app/command_options.h"
 
 #include <CLI/CLI.hpp>
+#include <bit>
 #include <limits>
 #include <map>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -160,6 +162,43 @@ void add_labels(CLI::App& app, CommandLine& c) {
       ->default_str(std::to_string(default_min_voxels));
 }
 
+/// Parses the value of --bricks: their use, and their cells or 0.
+std::pair<BrickOptions::Use, int> parse_bricks(const std::string& text) {
+  if (text == "auto") return {BrickOptions::Use::automatic, 0};
+  if (text == "off") return {BrickOptions::Use::never, 0};
+  const auto invalid = [&] {
+    return CLI::ValidationError("--bricks", "'" + text + "' is not auto, off or a power of two from " +
+                                                std::to_string(min_brick_cells) + " to " +
+                                                std::to_string(max_brick_cells));
+  };
+  std::uint64_t cells = 0;
+  try {
+    cells = parse_whole_number("--bricks", text, min_brick_cells, max_brick_cells);
+  } catch (const CLI::ValidationError&) {
+    throw invalid();
+  }
+  if (!std::has_single_bit(cells)) throw invalid();
+  return {BrickOptions::Use::always, static_cast<int>(cells)};
+}
+
+void add_bricks(CLI::App& app, CommandLine& c) {
+  app.add_option_function<std::string>(
+         "--bricks",
+         [&c](const std::string& text) {
+           std::tie(c.options.bricks.use, c.options.bricks.cells) = parse_bricks(text);
+         },
+         "Mesh and coarsen a segmented volume in bricks with this many cells along each edge, a power of two "
+         "from 32 to 1024, so that its dense mesh is never in memory at once; auto: if that would not fit. "
+         "Equal numbers give equal bytes")
+      ->type_name("CELLS|auto|off")
+      ->default_str("auto");
+  app.add_option(
+         "--scratch", c.options.bricks.scratch,
+         "Folder for finished bricks, which then need no memory: if the run is stopped, the same call "
+         "goes on from them. They are removed once the mesh is written")
+      ->type_name("DIR");
+}
+
 void add_strict(CLI::App& app, CommandLine& c) {
   app.add_flag("--strict", c.options.acceptance.strict, "Status 1 if there is any note that is certain");
 }
@@ -284,6 +323,7 @@ void add_prepare(CLI::App& app, CommandLine& c) {
   add_simplifying(app, c);
   add_meshing(app, c, "what the target needs");
   add_labels(app, c);
+  add_bricks(app, c);
   add_stats(app, c);
   add_common(app, c);
   add_time_limit(app, c);

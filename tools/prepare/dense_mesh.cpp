@@ -69,6 +69,8 @@ DenseMesh mesh_input(const MesherInput& surfaces, PrepareRun& run) {
   MesherOptions options = common_options(run);
   if (cells.uniform && cells.max_refinement.value_or(0) > 0)
     throw UsageError("--uniform has cells of one size; leave out --max-refinement, or --uniform");
+  if (run.options.bricks.use == BrickOptions::Use::always || !run.options.bricks.scratch.empty())
+    throw UsageError("--bricks and --scratch are for segmented volumes; leave them out");
   if (!surfaces.layers.empty() && cells.min_thickness)
     throw UsageError("--min-thickness does not work with layers; leave out --layer, or --min-thickness");
   const double diagonal = (surfaces.high - surfaces.low).norm();
@@ -108,7 +110,7 @@ Box3 box_of(const LabelInput& labels) {
   return box;
 }
 
-DenseMesh mesh_input(const LabelInput& labels, PrepareRun& run) {
+DenseMesh mesh_input(LabelInput& labels, PrepareRun& run) {
   const CellOptions& cells = run.options.cells;
   const TargetOptions& target = run.options.target;
   MesherOptions options = common_options(run);
@@ -131,6 +133,8 @@ DenseMesh mesh_input(const LabelInput& labels, PrepareRun& run) {
     throw UsageError(
         "--tolerance of 'mesh' is for surfaces; for a volume use 'prepare --tolerance', which bounds the "
         "distance from the dense mesh");
+  if (run.options.bricks.use == BrickOptions::Use::always)
+    return mesh_bricks(std::move(labels), options, run.options.bricks.cells, run);
   DenseMesh dense = mesh_labels(labels, options, &run.progress);
   if (target.tolerance) run.report.tolerance = tolerance_of(*target.tolerance, diagonal_of(dense.mesh));
   return dense;
@@ -152,7 +156,7 @@ std::vector<Vec3> inner_points(const TetMesh& mesh) {
 
 DenseMesh make_dense_mesh(ScanInput input, PrepareRun& run) {
   const Stopwatch watch;
-  DenseMesh dense = std::visit([&](const auto& scan) { return mesh_input(scan, run); }, input);
+  DenseMesh dense = std::visit([&](auto& scan) { return mesh_input(scan, run); }, input);
   if (run.task == Task::mesh) {
     if (run.options.order < 2) dense.reference.reset();
     if (!run.options.keep.field) dense.field.reset();
@@ -170,7 +174,7 @@ DenseMesh make_dense_mesh(ScanInput input, PrepareRun& run) {
   constexpr double finishing_share = 0.25;
   run.reserve_time(finishing_share * run.report.seconds_mesh);
   input = {};  // frees gigabytes of a large volume
-  run.report.dense = mesh_statistics(dense.mesh, run.options.shapes.bound());
+  if (!run.original) run.report.dense = mesh_statistics(dense.mesh, run.options.shapes.bound());
   return dense;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tetwright/prepare.h"
 
+#include <bit>
+#include <string>
 #include <utility>
 
 #include "common/message_text.h"
@@ -9,6 +11,7 @@
 #include "tetwright/mesh_quality.h"
 #include "tetwright/prepare_steps.h"
 #include "tetwright/simplify.h"
+#include "tools/bricks/brick_scratch.h"
 #include "tools/prepare/input_changes.h"
 
 namespace tetwright {
@@ -41,10 +44,12 @@ Prepared mesh_from_scans(std::vector<Input> inputs, PrepareRun& run) {
   Prepared result;
   DenseMesh dense = make_dense_mesh(read_scan(std::move(inputs), run), run);
   // The result for a segmented volume is compared with its dense mesh.
-  if (!dense.surface) refer_to(dense.mesh, "the dense mesh", run, result);
+  if (!dense.surface)
+    refer_to(run.original ? run.original->surface : dense.mesh, "the dense mesh", run, result);
   SurfaceToFollow surface = follow(*dense.reference);
   if (run.options.order >= 2) follow_sheets(surface, dense.mesh);
   result.mesh = simplify_to_target(std::move(dense.mesh), dense.reference.get(), dense.surface.get(), run);
+  run.original.reset();
   if (dense.surface) find_moved_boundary(result.mesh, *dense.surface, run);
   make_second_order(result.mesh, surface, run);
   dense.reference.reset();  // frees memory for comparing and writing the mesh
@@ -94,6 +99,7 @@ Prepared carry_out_within(Task task, std::vector<Input> inputs, const PrepareOpt
     PrepareReport report;
     PrepareRun run(task, options, progress ? *progress : silent, report);
     result = carry_out(std::move(inputs), run);
+    if (report.bricks) remove_brick_scratch(report.bricks->scratch);
     result.report = std::move(report);
   });
   return result;
@@ -150,6 +156,29 @@ Prepared improve_mesh(Input mesh, const PrepareOptions& options, Progress* progr
   return carry_out_within(Task::improve, std::move(one), options, progress);
 }
 
+namespace {
+
+/// Options that bricks cannot serve.
+void check_bricks(const PrepareOptions& options) {
+  const SizeOptions& sizes = options.sizes;
+  const char* const other = options.cells.uniform                      ? "--uniform"
+                            : options.target.tolerance                 ? "--tolerance"
+                            : sizes.field                              ? "--size-field"
+                            : sizes.min_edge                           ? "--min-edge"
+                            : sizes.max_edge                           ? "--max-edge"
+                            : options.schedule.kind == Schedule::paper ? "--schedule paper"
+                                                                       : nullptr;
+  if (other)
+    throw UsageError(std::string("--bricks does not work with ") + other + "; leave out one of them");
+  const int cells = options.bricks.cells;
+  if (cells < min_brick_cells || cells > max_brick_cells ||
+      !std::has_single_bit(static_cast<unsigned>(cells)))
+    throw UsageError("--bricks must be a power of two from " + std::to_string(min_brick_cells) + " to " +
+                     std::to_string(max_brick_cells) + ", not " + std::to_string(cells));
+}
+
+}  // namespace
+
 void check_options(Task task, const PrepareOptions& options) {
   const SizeOptions& sizes = options.sizes;
   const TargetOptions& target = options.target;
@@ -167,6 +196,9 @@ void check_options(Task task, const PrepareOptions& options) {
   }
   if (target.tolerance && options.schedule.kind == Schedule::paper)
     throw UsageError("--schedule paper does not bound distances; leave out --tolerance, or --schedule");
+  if (options.bricks.use == BrickOptions::Use::always) check_bricks(options);
+  if (options.bricks.use == BrickOptions::Use::never && !options.bricks.scratch.empty())
+    throw UsageError("--scratch is for bricks; leave it out, or --bricks off");
   if (options.order != 1 && options.order != 2) throw UsageError("the order of elements must be 1 or 2");
   if (options.cells.resolution && options.cells.size)
     throw UsageError("give --resolution or --voxel-size, not both");

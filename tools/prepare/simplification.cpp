@@ -54,6 +54,7 @@ TetMesh simplify_to_target(TetMesh mesh, const ReferenceSurface* reference, cons
   options.objective = asked.shapes.objective;
   options.reference = reference;
   options.surface = surface;
+  options.original = run.original ? &*run.original : nullptr;
   options.tolerance = run.report.tolerance;
   const RequestedSizes& sizes = run.report.sizes;
   options.sizes = sizes.target_length.get();

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -95,6 +96,13 @@ enum class Schedule : std::uint8_t {
   paper   ///< Figure 3 of the paper with its operations in its order; no improvement afterwards
 };
 
+/// What a mesh no longer shows of the one from which coarsen() made its parts.
+struct OriginalMesh {
+  TetMesh surface;                        ///< its boundary and interfaces with their patches; no tets
+  std::map<MaterialTag, double> volumes;  ///< of all materials, input units cubed
+  std::size_t tets = 0;
+};
+
 struct SimplifyOptions {
   std::size_t target_tets = 10000;  ///< at least 1; 0 with a tolerance: as few tets as that allows
   double min_solid_angle = 0.1;     ///< steradians; the final improvement works on tets below it
@@ -109,6 +117,9 @@ struct SimplifyOptions {
   /// The surface (input units) to which the mesh's surface is fitted and near which it is kept; null: the
   /// input mesh's own surface. Must outlive the call.
   const TriangleMesh* surface = nullptr;
+  /// The mesh from which coarsen() made this one: its surface and volumes are kept instead of those of the
+  /// coarser mesh. Null: the mesh itself. Not together with `surface`. Must outlive the call.
+  const OriginalMesh* original = nullptr;
   /// Max two-sided distance between the mesh's surface and `surface` or, without one, the input mesh's own
   /// surface; input units. 0: no bound. Parts that start farther away are not moved nearer:
   /// SimplifyReport::deviation has the distance reached. Tuned schedule only.
@@ -199,6 +210,26 @@ struct SimplifyReport {
 /// \throws Interrupted when cancelled.
 TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* report = nullptr,
                  Progress* progress = nullptr);
+
+struct CoarsenOptions {
+  /// Number of tets of the final mesh in the volume of this part, above 0.
+  double target_tets = 0;
+  /// One value for each point of the mesh, nonzero if frozen: those shared with other parts.
+  std::vector<std::uint8_t> frozen;
+  double beta = 5, gamma = 10;  ///< as in SimplifyOptions, like all that follow
+  const ReferenceSurface* reference = nullptr;
+  int max_iterations = 100;
+  std::uint64_t seed = 1;
+  std::size_t batch_size = 0;
+  std::string name = "mesh";
+};
+
+/// Coarsens a part of a mesh to about eight times its target and two tets more for each frozen boundary
+/// face, for simplify() of all parts together. It does not improve shapes, since later collapses would
+/// change them again, and nothing in it depends on other parts. Guarantees, parallelism and exceptions are
+/// those of simplify(); frozen points keep their coordinates to the last bit.
+TetMesh coarsen(TetMesh mesh, const CoarsenOptions& options, SimplifyReport* report = nullptr,
+                Progress* progress = nullptr);
 
 /// Two-sided distance between a mesh's surface and the surface from which it was made, with proven bounds.
 /// Works on a copy. Parallel; the result does not depend on the number of threads.

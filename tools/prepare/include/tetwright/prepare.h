@@ -167,6 +167,24 @@ struct BodyOptions {
   bool split_solids = false;
 };
 
+/// Meshing and coarsening of a segmented volume in bricks, so that its dense mesh is never in memory at once.
+/// For prepare().
+struct BrickOptions {
+  enum class Use : std::uint8_t {
+    automatic,  ///< if the dense mesh would not fit in memory
+    never,
+    always
+  };
+  Use use = Use::automatic;
+  /// With Use::always: edge of a brick, finest cells before any are halved; a power of two in this range. It
+  /// determines the result.
+  int cells = 0;
+  /// Folder for finished bricks, made if it does not exist: they need no memory until all are finished, and a
+  /// job that was stopped goes on from them. Empty: in memory.
+  std::string scratch;
+};
+inline constexpr int min_brick_cells = 32, max_brick_cells = 1024;
+
 /// Default of LabelOptions::min_voxels.
 inline constexpr std::size_t default_min_voxels = 8;
 
@@ -254,6 +272,7 @@ struct PrepareOptions {
   CellOptions cells;
   BodyOptions bodies;
   LabelOptions labels;
+  BrickOptions bricks;
   FeatureAngle feature_angle;  ///< determines which edges stay sharp
   TargetOptions target;
   SizeOptions sizes;
@@ -313,6 +332,17 @@ struct CoarserCells {
   double bytes;        ///< estimated memory for cells of size `asked`
 };
 
+/// How a segmented volume was meshed in bricks.
+struct BrickReport {
+  int cells = 0;                ///< edge of a brick, finest cells before any are halved
+  std::size_t bricks = 0;       ///< number of bricks
+  std::size_t repeated = 0;     ///< times that a brick was made again with more cells around it
+  std::size_t resumed = 0;      ///< bricks that were finished before
+  std::size_t coarse_tets = 0;  ///< tets of all coarsened bricks
+  double scratch_bytes = 0;     ///< of all bricks' files
+  std::string scratch;          ///< folder of these files; the caller removes them when it has the result
+};
+
 /// Report of a run. Members that belong to steps which are not run stay empty.
 struct PrepareReport {
   std::vector<std::string> inputs;
@@ -322,6 +352,7 @@ struct PrepareReport {
   std::vector<Diagnostic> diagnostics;  ///< findings and shortfalls
   std::optional<MesherReport> mesher;
   std::optional<CoarserCells> coarser;
+  std::optional<BrickReport> bricks;  ///< if the volume was meshed in bricks
   GapOpening gap_opening;
   std::optional<MeshStatistics> dense, result;
   std::vector<ContactReport> contacts;  ///< of bodies that meet, by pair

@@ -71,6 +71,8 @@ struct PrepareRun {
   PrepareReport& report;
   std::optional<MidsideNodes> midside;   ///< midside nodes of the result, with order 2
   std::shared_ptr<const CapFaces> caps;  ///< of the surfaces; null without holes
+  /// What the coarsened mesh of a volume in bricks no longer shows of the dense one.
+  std::optional<OriginalMesh> original;
 };
 
 /// Adds diagnostics for contents that a reader dropped.
@@ -104,10 +106,20 @@ TetInput read_tets(Input from, PrepareRun& run);
 
 /// Meshes the input at the requested resolution, or otherwise at the one that the target requires.
 ///
+/// A volume in bricks: the coarsened mesh, and PrepareRun::original.
 /// \return the mesh; its field and reference are null if no later step uses them
 /// \throws UsageError if options for cells cannot be combined
 /// \throws Error in the cases of mesh_surfaces() and mesh_labels()
 DenseMesh make_dense_mesh(ScanInput input, PrepareRun& run);
+
+/// Meshes and coarsens a segmented volume in bricks. Sets PrepareRun::original and the report of the dense
+/// mesh.
+///
+/// \param options the cells
+/// \param side edge of a brick, finest cells before any are halved
+/// \return the coarsened mesh
+/// \throws Error in the cases of mesh_labels()
+DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, int side, PrepareRun& run);
 
 /// Diagonal of a mesh's bounding box, input units.
 double diagonal_of(const TetMesh& mesh);

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "simplify/mesh/input_check.h"
+#include "simplify/schedule/engine.h"
+#include "simplify/schedule/tuned_schedule.h"
+#include "simplify/tuning/tuning.h"
+#include "tetwright/error.h"
+#include "tetwright/simplify.h"
+
+namespace tetwright {
+
+namespace {
+
+using Coarsening = SimplifyTuning::Coarsening;
+
+/// Number of boundary and interface faces with only frozen points.
+std::size_t frozen_faces(const EditableMesh& mesh) {
+  const std::vector<InterfaceFace> faces = mesh.interface_faces();
+  return static_cast<std::size_t>(std::count_if(faces.begin(), faces.end(), [&](const InterfaceFace& f) {
+    return std::all_of(f.ids.begin(), f.ids.end(), [&](Index p) { return mesh.frozen(p); });
+  }));
+}
+
+}  // namespace
+
+TetMesh coarsen(TetMesh mesh, const CoarsenOptions& options, SimplifyReport* report, Progress* progress) {
+  if (!(options.target_tets > 0)) throw UsageError("a target of 0 tets leaves nothing; give more");
+  check_mesh(mesh, options.frozen, options.name);
+  Engine engine(std::move(mesh),
+                {options.name, options.target_tets, options.beta, options.gamma, options.seed,
+                 options.batch_size, ShapeObjective::both, options.reference, options.frozen, false},
+                report, progress);
+  engine.throw_if_stopped();
+  merge_in_bulk(engine, options.target_tets, options.seed);
+  engine.compact();
+  const double target = std::ceil(Coarsening::final_tets * options.target_tets) +
+                        static_cast<double>(Coarsening::tets_for_frozen_face * frozen_faces(engine.mesh()));
+  run_collapses(engine, options.target_tets, static_cast<std::size_t>(target), options.max_iterations);
+  if (report) report->touching_points = engine.mesh().touching_points();
+  return std::move(engine).take();
+}
+
+}  // namespace tetwright

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "simplify/mesh/editable_mesh.h"
+#include "tetwright/simplify.h"
+
+namespace tetwright {
+
+/// The surface of an OriginalMesh in the working coordinates and with the regions of the coarsened mesh.
+struct OriginalSurface {
+  std::vector<Vec3> points;
+  std::vector<InterfaceFace> faces;  ///< ids are indices into points
+};
+
+/// Parallel.
+/// \pre the mesh has all materials of the original
+OriginalSurface surface_of(const EditableMesh& mesh, const OriginalMesh& original);
+
+}  // namespace tetwright

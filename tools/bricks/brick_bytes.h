@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "tools/bricks/brick_part.h"
+
+namespace tetwright {
+
+/// The bytes of a part, for files and messages of the same version of the program on machines of the same
+/// byte order: compressed by zstd, with its checksum.
+/// \throws OutputError if the memory does not suffice
+std::string to_bytes(const BrickPart& part);
+
+/// Restores a part.
+/// \param name where the bytes come from, for messages
+/// \throws InputError if they are damaged or incomplete
+BrickPart brick_part(std::string_view bytes, const std::string& name);
+
+}  // namespace tetwright

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "mesher/brick_mesher.h"
+#include "tetwright/mesh_quality.h"
+#include "tetwright/simplify.h"
+#include "tetwright/tet_mesh.h"
+
+namespace tetwright {
+
+/// What a brick contributes to the mesh of a volume: its dense mesh, coarsened, and what must be known of the
+/// dense one. Lengths in input units.
+struct BrickPart {
+  BrickBorder border;
+  /// Coarsened. Its interfaces are only the faces with a patch: those on the border of the volume.
+  TetMesh mesh;
+  /// By point of `mesh`: `shared` if other bricks may have it, `on_interface` if it lies on an interface, on
+  /// the boundary or where the brick was cut off.
+  std::vector<std::uint8_t> flags;
+  static constexpr std::uint8_t shared = 1, on_interface = 2;
+
+  TetMesh surface;  ///< boundary and interfaces of the dense mesh, without `cut_faces`; no tets
+  std::vector<std::uint8_t> surface_shared;  ///< by point of `surface`: 1 if other bricks may have it
+  /// Faces of the dense mesh that belong to a tet of another brick, too, unless they are on its boundary.
+  std::vector<InterfaceTriangle> cut_faces;
+
+  /// Of the dense mesh, without interfaces. Only points that no other brick has are counted, and the volumes
+  /// in the histogram are relative to the brick's mean.
+  MeshStatistics dense;
+  std::size_t leaves = 0, lattice_tets = 0, isolated_vertices = 0;
+};
+
+/// Meshes and coarsens a brick.
+/// \param halo as for BrickMesher::mesh()
+/// \param density final tets per volume, input units
+/// \param options its target and its frozen points are not used
+/// \param threshold for the statistics, steradians
+/// \throws Interrupted, OutOfTime
+BrickPart make_brick_part(const BrickMesher& mesher, const CellBox& brick, int halo, double density,
+                          CoarsenOptions options, double threshold, Progress* progress);
+
+}  // namespace tetwright

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tetwright {
+
+/// Everything that determines the bricks of a job, as names and values.
+using BrickJob = std::vector<std::pair<std::string, std::string>>;
+
+/// A folder with the finished bricks of a job. A brick's file appears complete or not at all, so that a job
+/// which was stopped goes on from its finished bricks.
+///
+/// The folder belongs to one process at a time. Bricks may be written and read concurrently.
+class BrickScratch {
+ public:
+  /// Opens the folder, or makes it.
+  /// \throws UsageError if it has files of another job or if another process uses it
+  /// \throws OutputError if it cannot be written
+  BrickScratch(std::string folder, const BrickJob& job);
+  ~BrickScratch();
+  BrickScratch(const BrickScratch&) = delete;
+  BrickScratch& operator=(const BrickScratch&) = delete;
+
+  /// Path of a brick's file.
+  std::string file(std::size_t brick) const;
+  bool has(std::size_t brick) const;
+  /// \throws OutputError if the file cannot be written; nothing of it is left then
+  void write(std::size_t brick, const std::string& bytes) const;
+  /// \throws InputError if the file cannot be read
+  std::string read(std::size_t brick) const;
+  /// Space for more files, bytes.
+  double free_bytes() const;
+
+ private:
+  std::string folder_;
+  int lock_ = -1;
+};
+
+/// Removes the files of all bricks and of the job from a folder, and the folder if nothing else is in it.
+/// Errors are ignored: the job is finished. \param folder may be empty: none
+void remove_brick_scratch(const std::string& folder) noexcept;
+
+}  // namespace tetwright

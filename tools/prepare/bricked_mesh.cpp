@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <zlib.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "mesher/brick_mesher.h"
+#include "mesher/cut/cut_off_surface.h"
+#include "mesher/field_mesher.h"
+#include "mesher/volume_field.h"
+#include "tetwright/error.h"
+#include "tetwright/prepare_steps.h"
+#include "tools/bricks/brick_bytes.h"
+#include "tools/bricks/brick_part.h"
+#include "tools/bricks/brick_scratch.h"
+#include "tools/bricks/gathered_mesh.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Volume of all voxels that are meshed, input units cubed.
+double meshed_volume(const LabelInput& labels, bool keep_outside) {
+  double voxels = 0;
+  for (const LabelMaterial& m : labels.materials) voxels += static_cast<double>(m.voxels);
+  if (keep_outside) voxels = 1.0 * labels.size[0] * labels.size[1] * labels.size[2];
+  return voxels * std::abs(labels.directions.determinant());
+}
+
+CoarsenOptions coarsen_options(const PrepareOptions& asked, const std::string& name) {
+  CoarsenOptions options;
+  options.beta = asked.schedule.beta;
+  options.gamma = asked.schedule.gamma;
+  options.max_iterations = asked.shapes.max_iterations;
+  options.seed = asked.seed;
+  options.name = name;
+  return options;
+}
+
+/// Flags of the materials that the dense mesh has, for validate_materials_left().
+std::vector<std::uint8_t> materials_there(const MaterialField& field, const MeshStatistics& dense) {
+  std::vector<std::uint8_t> there;
+  for (const FieldRegion& region : field.regions()) there.push_back(dense.materials.count(region.tag) > 0);
+  return there;
+}
+
+/// Checksum of the regions of all voxels.
+std::string checksum(const std::vector<RegionIndex>& regions) {
+  const auto* const bytes = reinterpret_cast<const Bytef*>(regions.data());
+  return std::to_string(crc32_z(0, bytes, regions.size() * sizeof(RegionIndex)));
+}
+
+std::string numbers(std::initializer_list<double> values) {
+  std::string text;
+  for (const double value : values) {
+    std::array<char, 32> buffer;
+    text +=
+        (text.empty() ? "" : " ") +
+        std::string(buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr);
+  }
+  return text;
+}
+
+/// Everything that determines the bricks.
+BrickJob describe(const LabelInput& labels, const MesherOptions& options, int side, const PrepareRun& run) {
+  const PrepareOptions& asked = run.options;
+  const Eigen::Matrix3d& d = labels.directions;
+  std::string tags;
+  for (const LabelMaterial& m : labels.materials) tags += (tags.empty() ? "" : " ") + std::to_string(m.tag);
+  return {{"tetwright", TETWRIGHT_VERSION},
+          {"voxels", numbers({1.0 * labels.size[0], 1.0 * labels.size[1], 1.0 * labels.size[2]})},
+          {"origin", numbers({labels.origin[0], labels.origin[1], labels.origin[2]})},
+          {"directions",
+           numbers({d(0, 0), d(1, 0), d(2, 0), d(0, 1), d(1, 1), d(2, 1), d(0, 2), d(1, 2), d(2, 2)})},
+          {"labels", tags},
+          {"checksum of the voxels", checksum(labels.regions)},
+          {"--bricks", std::to_string(side)},
+          {"--target-tets", std::to_string(*asked.target.tets)},
+          {"cell size", numbers({cell_size(labels, options)})},
+          {"--adaptivity", numbers({options.adaptivity})},
+          {"--keep-outside", options.keep_outside ? "yes" : "no"},
+          {"--min-solid-angle", numbers({asked.shapes.bound()})},
+          {"--max-iterations", std::to_string(asked.shapes.max_iterations)},
+          {"--beta", numbers({asked.schedule.beta})},
+          {"--gamma", numbers({asked.schedule.gamma})},
+          {"--seed", std::to_string(asked.seed)}};
+}
+
+/// The bricks of a job, in memory or in files.
+class Bricks {
+ public:
+  Bricks(std::size_t count, std::unique_ptr<const BrickScratch> scratch, BrickReport& report)
+      : scratch_(std::move(scratch)), parts_(count), report_(report) {
+    report.bricks = count;
+  }
+
+  /// The border of a brick with this halo, or a larger one if a file has it.
+  /// \param make makes the brick
+  const BrickBorder* border(std::size_t brick, int halo, const std::function<BrickPart()>& make) {
+    BrickPart& part = parts_[brick];
+    if (!(scratch_ && scratch_->has(brick) && read(brick, halo))) {
+      part = make();
+      if (scratch_) {
+        scratch_->write(brick, to_bytes(part));
+        forget(brick);
+      }
+    }
+    return &part.border;
+  }
+
+  /// All parts.
+  std::vector<BrickPart> take() && {
+    if (scratch_)
+      for (std::size_t b = 0; b < parts_.size(); ++b) {
+        const std::string bytes = scratch_->read(b);
+        report_.scratch_bytes += static_cast<double>(bytes.size());
+        parts_[b] = brick_part(bytes, scratch_->file(b));
+      }
+    return std::move(parts_);
+  }
+
+ private:
+  /// Reads a finished brick; false if it is damaged or its halo is too small.
+  bool read(std::size_t brick, int halo) {
+    try {
+      parts_[brick] = brick_part(scratch_->read(brick), scratch_->file(brick));
+    } catch (const InputError&) {
+      return false;  // made again
+    }
+    forget(brick);
+    const bool suffices = parts_[brick].border.halo >= halo;
+    report_.resumed += suffices;
+    return suffices;
+  }
+  /// Keeps only the border of a brick that is in a file.
+  void forget(std::size_t brick) {
+    BrickBorder border = std::move(parts_[brick].border);
+    parts_[brick] = {};
+    parts_[brick].border = std::move(border);
+  }
+
+  std::unique_ptr<const BrickScratch> scratch_;
+  std::vector<BrickPart> parts_;
+  BrickReport& report_;
+};
+
+}  // namespace
+
+DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, int side, PrepareRun& run) {
+  DenseMesh made;
+  MesherReport& report = made.report;
+  BrickReport& bricks = run.report.bricks.emplace();
+  bricks.cells = side;
+  bricks.scratch = run.options.bricks.scratch;
+  std::unique_ptr<const BrickScratch> scratch;
+  if (!bricks.scratch.empty())
+    scratch = std::make_unique<BrickScratch>(bricks.scratch, describe(labels, options, side, run));
+  Stages stages(&run.progress);
+  stages.begin("signed distances");
+  VolumeField volume = make_volume_field(labels, options, report, &run.progress);
+  labels.regions = {};  // the field has what is needed of them
+  report.seconds_sdf = stages.seconds();
+  report.loops_sdf = stages.loops();
+  const BrickMesher mesher(std::move(volume), options, report, &run.progress);
+  made.field = mesher.field();
+
+  stages.begin("bricks");
+  const std::vector<CellBox> boxes = mesher.bricks(side << report.refinement);
+  const double density =
+      static_cast<double>(*run.options.target.tets) / meshed_volume(labels, options.keep_outside);
+  const CoarsenOptions coarsening = coarsen_options(run.options, run.report.inputs.front());
+  Bricks all(boxes.size(), std::move(scratch), bricks);
+  bricks.repeated = for_each_brick(mesher, boxes, [&](std::size_t b, int halo) {
+    run.progress.update(static_cast<double>(b) / static_cast<double>(boxes.size()));
+    return all.border(b, halo, [&] {
+      return make_brick_part(mesher, boxes[b], halo, density, coarsening, run.options.shapes.bound(),
+                             &run.progress);
+    });
+  });
+  stages.begin("joining bricks");
+  std::vector<BrickPart> parts = std::move(all).take();
+  for (const BrickPart& part : parts) {
+    report.cells += part.leaves;
+    report.lattice_tets += part.lattice_tets;
+    report.isolated_vertices += part.isolated_vertices;
+  }
+  std::map<MaterialTag, std::string> names;
+  for (const FieldRegion& region : made.field->regions())
+    if (!region.name.empty()) names[region.tag] = region.name;
+  GatheredMesh gathered = gather(std::move(parts), std::move(names));
+  validate_materials_left(labels, materials_there(*made.field, gathered.dense));
+  made.mesh = std::move(gathered.mesh);
+  bricks.coarse_tets = made.mesh.tets.size();
+  run.report.dense = std::move(gathered.dense);
+  run.original = std::move(gathered.original);
+  made.reference = reference_of(run.original->surface, made.field);
+  return made;
+}
+
+}  // namespace tetwright
