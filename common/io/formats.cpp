@@ -440,6 +440,13 @@ void write_label_volume(const LabelVolume& volume, const std::string& path, Outp
   write_into(files, path, [&](const ByteSink& sink) { sink(format.write(volume)); });
 }
 
+void write_label_source(const LabelSource& source, MaterialTag largest, const std::string& path,
+                        OutputFiles* files, const std::string& name, Progress* progress) {
+  const VolumeFormat& format = need_written_format(volume_formats(), path, FileKind::volume, name);
+  write_into(files, path,
+             [&](const ByteSink& sink) { format.write_source(source, largest, sink, progress); });
+}
+
 std::vector<std::string> files_of_input(const std::string& path) {
   static const std::vector<std::vector<const char*>> families{
       {".node", ".ele", ".face"}, {".xdmf", ".h5", "_facets.xdmf", "_facets.h5"}, {".hdr", ".img"}};

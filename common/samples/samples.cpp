@@ -10,6 +10,7 @@
 
 #include "common/message_text.h"
 #include "common/random.h"
+#include "common/samples/foam.h"
 #include "common/samples/random_interior.h"
 #include "tetwright/error.h"
 
@@ -296,6 +297,10 @@ LabelVolume organs() {
   return volume;
 }
 
+LabelVolume usual_foam() {
+  return read_all(Foam(default_foam_voxels, default_foam_grains(default_foam_voxels)), foam_name);
+}
+
 struct NamedSample {
   const char* name;
   std::variant<TriangleMesh (*)(), TetMesh (*)(), LabelVolume (*)()> make;
@@ -316,6 +321,7 @@ const std::vector<NamedSample>& samples() {
       {"random-interior-small", +[] { return random_interior(3, 170, 0.25); }},
       {"random-interior-large", +[] { return random_interior(14, 30000, 0.07); }},
       {"organs", organs},
+      {foam_name, usual_foam},
       {"heater_below",
        +[] {
          return heater_part({0, 0, 0}, {4, 1, 1}, {8, 2, 3});

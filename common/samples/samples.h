@@ -21,7 +21,8 @@ namespace tetwright {
 ///   top of each other); random_interior, random_interior_small and random_interior_large (a coarse skin
 ///   filled with 34,000, 1,000 and 200,000 tets between random points, two in five of them slivers and
 ///   similar).
-/// - A segmented volume: organs (a body with a skin one voxel thick, a spine, two organs that touch, noise).
+/// - Segmented volumes: organs (a body with a skin one voxel thick, a spine, two organs that touch, noise)
+///   and foam (a cube filled with grains) in its default size; class Foam has others.
 std::vector<std::string> sample_names();
 
 using Sample = std::variant<TriangleMesh, TetMesh, LabelVolume>;

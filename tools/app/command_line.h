@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -56,6 +58,12 @@ struct BatchOptions {
   bool retry = false;   ///< true: rerun jobs that did not end with status 0
 };
 
+/// Options of the sample `foam`; empty: its default.
+struct FoamOptions {
+  std::optional<int> voxels;            ///< along each edge
+  std::optional<std::uint32_t> grains;  ///< their number
+};
+
 /// A parsed command line; the initial values are the defaults that --help shows.
 struct CommandLine {
   Command command = Command::prepare;
@@ -72,6 +80,7 @@ struct CommandLine {
   ConsoleOptions console;
   CheckOptions check;
   BatchOptions batch;
+  FoamOptions foam;
 };
 
 /// Whether the command makes a mesh.

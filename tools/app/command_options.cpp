@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/samples/foam.h"
 #include "common/samples/samples.h"
 #include "tetwright/io.h"
 #include "tools/app/body_options.h"
@@ -431,6 +432,14 @@ void add_sample(CLI::App& app, CommandLine& c) {
          "Format in place of the extension, and of standard output (-o -): as for other commands' meshes, "
          "or an extension of a surface or volume without its dot")
       ->type_name("NAME");
+  add_whole_number(
+      app, "--voxels", c.foam.voxels, min_foam_voxels, max_foam_voxels,
+      "foam: number of voxels along each edge of the cube, 4 to 4096; the file is written piece by "
+      "piece, not compressed")
+      ->default_str(std::to_string(default_foam_voxels));
+  add_whole_number(
+      app, "--grains", c.foam.grains, 1, max_foam_grains(max_foam_voxels),
+      "foam: number of grains, 1 to 1000000, at most a 64th of the voxels (default: 20, or what fits)");
   add_stats(app, c);
   add_common(app, c);
 }

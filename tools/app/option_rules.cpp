@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "common/lower_case.h"
+#include "common/message_text.h"
+#include "common/samples/foam.h"
 #include "tetwright/error.h"
 #include "tetwright/io.h"
 #include "tetwright/prepare_steps.h"
@@ -88,6 +90,22 @@ void check_parts(const CommandLine& out) {
                      " tets (--target-tets) has fewer tets than parts; give a smaller number");
 }
 
+void check_foam(const CommandLine& out) {
+  const auto& [voxels, grains] = out.foam;
+  if (!voxels && !grains) return;
+  const std::string& name = out.inputs.front();
+  if (name != foam_name)
+    throw UsageError(
+        (voxels ? "--voxels " + std::to_string(*voxels) : "--grains " + std::to_string(*grains)) +
+        " is for the sample " + foam_name + "; leave it out, or give " + foam_name + " instead of " +
+        in_quotes(name));
+  const int edge = voxels.value_or(default_foam_voxels);
+  if (const std::uint32_t most = max_foam_grains(edge); grains.value_or(1) > most)
+    throw UsageError("--grains " + std::to_string(*grains) + ": a foam with " + std::to_string(edge) +
+                     " voxels along each edge has room for " + std::to_string(most) +
+                     " (a 64th of its voxels); give fewer grains or more --voxels");
+}
+
 void complete_streams(CommandLine& out) {
   check_no_stream(out);
   complete_input_stream(out);
@@ -116,6 +134,7 @@ void complete_command_line(CommandLine& out) {
   if (out.options.order > 1 && !out.outputs.mesh.empty())
     check_holds_second_order(out.outputs.mesh, out.outputs.format);
   check_parts(out);
+  check_foam(out);
   if (out.check.json && out.outputs.stats == "-")
     throw UsageError(
         "--json and --stats - both print to standard output; give --stats a file, or leave one out");

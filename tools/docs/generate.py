@@ -27,7 +27,7 @@ UNITS = {
     "--min-thickness": "input units, or % of the diagonal", "--grading": "length per length", "--min-solid-angle": "steradians",
     "--only-below": "steradians", "--max-iterations": "iterations", "--beta": "ideal edges", "--gamma": "", "--resolution": "cells",
     "--voxel-size": "input units", "--adaptivity": "finest cells", "--max-refinement": "halvings", "--feature-angle": "degrees",
-    "--layer": "input units", "--region": "input units", "--cap": "input units", "--contact-tolerance": "input units, or % of the diagonal", "--extend": "input units, or % of the diagonal",
+    "--voxels": "voxels", "--grains": "grains", "--layer": "input units", "--region": "input units", "--cap": "input units", "--contact-tolerance": "input units, or % of the diagonal", "--extend": "input units, or % of the diagonal",
     "--base": "input units", "--thicken": "input units, or % of the diagonal", "--min-voxels": "voxels", "--outside-label": "label", "--labels": "labels", "--order": "", "--parts": "parts", "--jobs": "jobs",
 }
 COMMANDS_ORDER = ("prepare", "mesh", "simplify", "improve", "check", "batch", "sample")

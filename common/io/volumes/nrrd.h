@@ -7,9 +7,11 @@
 #include "common/io/volumes/data_file.h"
 #include "common/io/volumes/raw_volume.h"
 #include "tetwright/files.h"
-#include "tetwright/label_volume.h"
+#include "tetwright/label_source.h"
 
 namespace tetwright {
+
+class Progress;
 
 /// Reads an NRRD volume: raw, gzip or text, attached to its header or in a separate file. If there are more
 /// than three axes, those of size 1 are dropped. Labels get the names of 3D Slicer's segments (.seg.nrrd);
@@ -29,5 +31,11 @@ std::optional<RawVolume> find_nrrd(const HeaderBytes& head, const std::string& n
 /// Content of an NRRD file: attached, gzip, in the smallest integer type that holds all labels. Origin and
 /// directions round-trip bit by bit.
 std::string write_nrrd(const LabelVolume& volume);
+
+/// Writes an NRRD file slab by slab: attached and raw, so that it can be read by ranges, in the smallest of
+/// uint8, uint16 and uint32 that holds `largest`. A slab has 2^24 voxels, or a slice if that has more;
+/// threads share it. \param progress receives the fraction that is written; may be null \pre all labels are
+/// between 0 and `largest`
+void write_raw_nrrd(const LabelSource& source, MaterialTag largest, const ByteSink& sink, Progress* progress);
 
 }  // namespace tetwright

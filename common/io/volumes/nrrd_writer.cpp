@@ -10,6 +10,8 @@
 #include "common/io/volumes/nrrd.h"
 #include "common/number_text.h"
 #include "tetwright/error.h"
+#include "tetwright/progress.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 
@@ -17,6 +19,8 @@ namespace {
 
 /// Number of labels converted at a time.
 constexpr std::size_t block_labels = std::size_t{1} << 18;
+/// Voxels of a slab: many enough for the blocks of many threads, and 64 MB at most.
+constexpr std::int64_t slab_voxels = std::int64_t{1} << 24;
 
 /// Appends a gzip file of one member to `out`; some readers stop after the first member.
 class GzipWriter {
@@ -48,18 +52,21 @@ class GzipWriter {
 };
 
 template <class Stored>
+void put_label(MaterialTag label, char* to) {
+  auto bytes = std::bit_cast<std::array<char, sizeof(Stored)>>(static_cast<Stored>(label));
+  if (!little_endian_machine) std::reverse(bytes.begin(), bytes.end());
+  std::copy(bytes.begin(), bytes.end(), to);
+}
+
+template <class Stored>
 void append_labels(std::string& out, const std::vector<MaterialTag>& labels) {
   GzipWriter gzip(out);
   std::string block;
   for (std::size_t begin = 0; begin < labels.size(); begin += block_labels) {
     const std::size_t end = std::min(labels.size(), begin + block_labels);
     block.resize((end - begin) * sizeof(Stored));
-    for (std::size_t i = begin; i < end; ++i) {
-      auto bytes = std::bit_cast<std::array<char, sizeof(Stored)>>(static_cast<Stored>(labels[i]));
-      if (!little_endian_machine) std::reverse(bytes.begin(), bytes.end());
-      std::copy(bytes.begin(), bytes.end(),
-                block.begin() + static_cast<std::ptrdiff_t>((i - begin) * sizeof(Stored)));
-    }
+    for (std::size_t i = begin; i < end; ++i)
+      put_label<Stored>(labels[i], &block[(i - begin) * sizeof(Stored)]);
     gzip.add(block, end == labels.size());
   }
 }
@@ -86,6 +93,71 @@ bool is_nrrd_space(const std::string& space) {
   return std::find(names.begin(), names.end(), space) != names.end();
 }
 
+std::string nrrd_header(const LabelGrid& grid, const char* type, const char* encoding) {
+  std::string out = std::string("NRRD0004\n# https://teem.sourceforge.net/nrrd/format.html\ntype: ") + type +
+                    "\ndimension: 3\n";
+  out += is_nrrd_space(grid.space) ? "space: " + grid.space : "space dimension: 3";
+  out += "\nsizes:";
+  for (const int n : grid.size) {
+    out += ' ';
+    append_number(out, n);
+  }
+  out += "\nspace directions:";
+  for (int k = 0; k < 3; ++k) {
+    out += ' ';
+    append_vector(out, grid.directions.col(k));
+  }
+  out += std::string("\nkinds: domain domain domain\nendian: little\nencoding: ") + encoding +
+         "\nspace origin: ";
+  append_vector(out, grid.origin);
+  out += "\n\n";
+  return out;
+}
+
+/// Slices that are written at a time: whole blocks of the source, if they fit.
+int slices_at_once(const LabelSource& source) {
+  const VoxelIndex& size = source.grid().size;
+  const int block = source.block()[2];
+  const auto fit = static_cast<int>(
+      std::clamp<std::int64_t>(slab_voxels / (std::int64_t{size[0]} * size[1]), 1, source.grid().size[2]));
+  return fit > block ? fit - fit % block : fit;
+}
+
+/// Passes the labels to the sink.
+template <class Stored>
+void write_slabs(const LabelSource& source, MaterialTag largest, const ByteSink& sink, Progress* progress) {
+  const VoxelIndex& size = source.grid().size;
+  const int slices = slices_at_once(source);
+  const int block_rows = std::min(source.block()[1], size[1]);
+  const int blocks = (size[1] + block_rows - 1) / block_rows;
+  const std::size_t row_bytes = static_cast<std::size_t>(size[0]) * sizeof(Stored);
+  std::string slab;
+  // One for each worker: memory that is allocated again and again costs more time than the labels.
+  std::vector<std::vector<MaterialTag>> labels_of(thread_count());
+  for (int z = 0; z < size[2]; z += slices) {
+    const int depth = std::min(slices, size[2] - z);
+    slab.resize(static_cast<std::size_t>(depth) * static_cast<std::size_t>(size[1]) * row_bytes);
+    parallel_chunks(static_cast<std::size_t>(blocks), [&](std::size_t block, unsigned worker) {
+      const int y = static_cast<int>(block) * block_rows;
+      const int rows = std::min(block_rows, size[1] - y);
+      const std::size_t slice_labels = static_cast<std::size_t>(rows) * static_cast<std::size_t>(size[0]);
+      std::vector<MaterialTag>& labels = labels_of[worker];
+      labels.resize(static_cast<std::size_t>(depth) * slice_labels);
+      source.read({0, y, z}, {size[0], y + rows, z + depth}, labels);
+      for (std::size_t k = 0; k < static_cast<std::size_t>(depth); ++k) {
+        char* to = &slab[(k * static_cast<std::size_t>(size[1]) + static_cast<std::size_t>(y)) * row_bytes];
+        for (std::size_t i = 0; i < slice_labels; ++i, to += sizeof(Stored)) {
+          const MaterialTag label = labels[k * slice_labels + i];
+          TETWRIGHT_CHECK(0 <= label && label <= largest);
+          put_label<Stored>(label, to);
+        }
+      }
+    });
+    sink(slab);
+    if (progress) progress->update(static_cast<double>(z + depth) / size[2]);
+  }
+}
+
 }  // namespace
 
 std::string write_nrrd(const LabelVolume& volume) {
@@ -98,22 +170,7 @@ std::string write_nrrd(const LabelVolume& volume) {
                      : fit(-32768, 32767) ? "int16"
                      : fit(0, 65535)      ? "uint16"
                                           : "int32";
-  std::string out = std::string("NRRD0004\n# https://teem.sourceforge.net/nrrd/format.html\ntype: ") + type +
-                    "\ndimension: 3\n";
-  out += is_nrrd_space(volume.space) ? "space: " + volume.space : "space dimension: 3";
-  out += "\nsizes:";
-  for (const int n : volume.size) {
-    out += ' ';
-    append_number(out, n);
-  }
-  out += "\nspace directions:";
-  for (int k = 0; k < 3; ++k) {
-    out += ' ';
-    append_vector(out, volume.directions.col(k));
-  }
-  out += "\nkinds: domain domain domain\nendian: little\nencoding: gzip\nspace origin: ";
-  append_vector(out, volume.origin);
-  out += "\n\n";
+  std::string out = nrrd_header(volume, type, "gzip");
   if (type[0] == 'i')
     type[3] == '1' ? append_labels<std::int16_t>(out, volume.labels)
                    : append_labels<std::int32_t>(out, volume.labels);
@@ -121,6 +178,20 @@ std::string write_nrrd(const LabelVolume& volume) {
     type[4] == '8' ? append_labels<std::uint8_t>(out, volume.labels)
                    : append_labels<std::uint16_t>(out, volume.labels);
   return out;
+}
+
+void write_raw_nrrd(const LabelSource& source, MaterialTag largest, const ByteSink& sink,
+                    Progress* progress) {
+  const auto write = [&](const char* type, const auto& slabs) {
+    sink(nrrd_header(source.grid(), type, "raw"));
+    slabs(source, largest, sink, progress);
+  };
+  if (largest <= 255)
+    write("uint8", write_slabs<std::uint8_t>);
+  else if (largest <= 65535)
+    write("uint16", write_slabs<std::uint16_t>);
+  else
+    write("uint32", write_slabs<std::uint32_t>);
 }
 
 }  // namespace tetwright

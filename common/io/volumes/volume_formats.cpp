@@ -40,7 +40,11 @@ std::unique_ptr<LabelSource> open_hdf5_path(const VolumePath& path, std::size_t 
 }
 
 constexpr std::array<VolumeFormat, 15> formats_of_volumes{
-    {{.extension = ".nrrd", .read = read_nrrd, .find = find_nrrd, .write = write_nrrd},
+    {{.extension = ".nrrd",
+      .read = read_nrrd,
+      .find = find_nrrd,
+      .write = write_nrrd,
+      .write_source = write_raw_nrrd},
      {.extension = ".nhdr", .read = read_nrrd, .find = find_nrrd, .one_file = false},
      {.extension = ".mhd", .read = read_metaimage, .find = find_metaimage, .one_file = false},
      {.extension = ".mha", .read = read_metaimage, .find = find_metaimage},

@@ -8,9 +8,12 @@
 
 #include "common/io/volumes/data_file.h"
 #include "common/io/volumes/raw_volume.h"
+#include "tetwright/files.h"
 #include "tetwright/label_source.h"
 
 namespace tetwright {
+
+class Progress;
 
 /// A file or folder with volumes, and the volume in it.
 struct VolumePath {
@@ -30,8 +33,11 @@ struct VolumeFormat {
   RawVolumeFinder find = nullptr;  ///< null: voxels are always read as a whole
   std::unique_ptr<LabelSource> (*open)(const VolumePath& path, std::size_t cache_bytes) = nullptr;
   std::string (*write)(const LabelVolume& volume) = nullptr;  ///< null: the format can only be read
-  const char* header = nullptr;                               ///< extension of the header file
-  bool one_file = true;                                       ///< false: the voxels are in another file
+  /// Writes slab by slab; null like `write`. See write_label_source().
+  void (*write_source)(const LabelSource& source, MaterialTag largest, const ByteSink& sink,
+                       Progress* progress) = nullptr;
+  const char* header = nullptr;  ///< extension of the header file
+  bool one_file = true;          ///< false: the voxels are in another file
 };
 
 std::span<const VolumeFormat> volume_formats();

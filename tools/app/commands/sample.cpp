@@ -3,8 +3,10 @@
 
 #include <cstdio>
 
+#include "common/samples/foam.h"
 #include "tetwright/files.h"
 #include "tetwright/io.h"
+#include "tetwright/resources.h"
 #include "tools/app/commands/command_run.h"
 #include "tools/app/commands/commands.h"
 #include "tools/app/commands/output_paths.h"
@@ -29,15 +31,37 @@ void write(const LabelVolume& volume, const CommandLine& line, OutputFiles& file
   write_label_volume(volume, line.outputs.mesh, &files, line.outputs.format);
 }
 
+/// Writes a foam piece by piece, since it may be larger than the memory.
+void write_foam(CommandRun& run, OutputFiles& files) {
+  const OutputOptions& out = run.line.outputs;
+  check_output_path(out.mesh, FileKind::volume, out.format);
+  const FoamOptions& options = run.line.foam;
+  const int voxels = options.voxels.value_or(default_foam_voxels);
+  const Foam foam(voxels, options.grains.value_or(default_foam_grains(voxels)));
+  if (out.mesh == "-")
+    require_memory(static_cast<double>(foam.grid().voxels()) * sizeof(MaterialTag),
+                   "the volume for standard output", "give -o a file");
+  run.progress.begin_stage("write");
+  write_label_source(foam, foam.grains(), out.mesh, &files, out.format, &run.progress);
+  run.progress.finish();
+}
+
+void write_sample(const CommandLine& line, OutputFiles& files) {
+  const Sample sample = make_sample(line.inputs.front());
+  check_output_path(line.outputs.mesh, std::visit([](const auto& made) { return kind_of(made); }, sample),
+                    line.outputs.format);
+  std::visit([&](const auto& made) { write(made, line, files); }, sample);
+}
+
 }  // namespace
 
 void run_sample(CommandRun& run) {
   const CommandLine& line = run.line;
-  const Sample sample = make_sample(line.inputs.front());
-  check_output_path(line.outputs.mesh, std::visit([](const auto& made) { return kind_of(made); }, sample),
-                    line.outputs.format);
-  OutputFiles files;
-  std::visit([&](const auto& made) { write(made, line, files); }, sample);
+  OutputFiles files(&run.progress);
+  if (line.inputs.front() == foam_name)
+    write_foam(run, files);
+  else
+    write_sample(line, files);
   run.report.seconds_total = run.since_start.seconds();
   run.report.loops_total = run.since_start.loops();
   write_stats(run, files);

@@ -365,6 +365,14 @@ void write_interfaces(const TetMesh& mesh, const std::string& path, OutputFiles*
                       const std::string& format = {});
 void write_label_volume(const LabelVolume& volume, const std::string& path, OutputFiles* files = nullptr,
                         const std::string& format = {});
+/// Writes a volume that need not fit into memory, slab by slab, with the memory of a few slabs of 2^24 voxels
+/// (standard output keeps all bytes). The file is not compressed, so that open_label_source() reads it by
+/// ranges, and has the smallest unsigned type of 8, 16 or 32 bits that holds `largest`.
+/// \param progress receives the fraction that is written; null: none
+/// \pre all labels are between 0 and `largest`
+void write_label_source(const LabelSource& source, MaterialTag largest, const std::string& path,
+                        OutputFiles* files = nullptr, const std::string& format = {},
+                        Progress* progress = nullptr);
 
 /// All files that write_tet_mesh() writes for a path.
 /// \param parts number of parts; 0: the mesh is not divided

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "tests/common/io/tricky_meshes.h"
+#include "tests/common/io/volume_boxes.h"
 #include "tests/common/io/volume_bytes.h"
 
 namespace tetwright::nrrd_test {
@@ -250,6 +251,30 @@ TEST(Nrrd, WrittenInTheSmallestType) {
   other.labels = {1};
   other.space = "of my own";
   EXPECT_EQ(read_nrrd(write_nrrd(other), "f").space, "");
+}
+
+TEST(Nrrd, WrittenBySlabsInTheSmallestUnsignedType) {
+  const auto type_of = [](MaterialTag largest) {
+    LabelVolume volume = numbered_volume({5, 3, 4});
+    volume.labels[7] = largest;
+    volume.directions << 0, 0, 1.0 / 3, 0.1, 0, 0, 0, -7, 0;
+    volume.origin = Vec3(0.1 + 0.2, -1e300, 5e-324);
+    std::string written;
+    write_raw_nrrd(
+        MemoryLabelSource(volume), largest, [&](std::string_view bytes) { written += bytes; }, nullptr);
+    const LabelVolume back = read_nrrd(written, "f");
+    EXPECT_EQ(back.size, volume.size);
+    EXPECT_EQ(back.labels, volume.labels);
+    EXPECT_EQ(back.directions, volume.directions);
+    EXPECT_TRUE(same_bits({back.origin}, {volume.origin}));
+    const std::size_t at = written.find("type: ") + 6;
+    return written.substr(at, written.find('\n', at) - at);
+  };
+  EXPECT_EQ(type_of(255), "uint8");
+  EXPECT_EQ(type_of(256), "uint16");
+  EXPECT_EQ(type_of(65535), "uint16");
+  EXPECT_EQ(type_of(65536), "uint32");
+  EXPECT_EQ(type_of(2147483647), "uint32");
 }
 
 TEST(Nrrd, CutAnywhereItIsRefused) {
