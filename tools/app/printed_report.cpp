@@ -161,6 +161,14 @@ void print_parts(const PartitionStatistics& partition) {
   std::printf("\n");
 }
 
+/// Line such as "64 bricks of 128 cells (--bricks 128), 12 of them finished before: 4000000 tets coarsened".
+void print_bricks(const BrickReport& bricks) {
+  std::printf("%zu bricks of %d cells (--bricks %d)", bricks.bricks, bricks.cells, bricks.cells);
+  if (bricks.resumed > 0) std::printf(", %zu of them finished before", bricks.resumed);
+  if (bricks.repeated > 0) std::printf(", %zu made again with more cells around them", bricks.repeated);
+  std::printf(": %zu tets coarsened\n", bricks.coarse_tets);
+}
+
 }  // namespace
 
 void print_report(const CommandLine& line, const PrepareReport& run, const PartitionStatistics* parts) {
@@ -231,6 +239,7 @@ void print_report(const CommandLine& line, const PrepareReport& run, const Parti
         run.second_order->edges, run.second_order->on_surface, run.second_order->part_way,
         run.second_order->straight);
   if (parts) print_parts(*parts);
+  if (run.bricks) print_bricks(*run.bricks);
   if (run.mesher)
     std::printf("resolution %d (cells of %.4g), ", run.mesher->resolution, run.mesher->cell_size);
   std::printf("%.2f s: read %.2f", run.seconds_total, run.seconds_read);

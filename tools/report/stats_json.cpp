@@ -378,6 +378,15 @@ void add_mesher_json(const MesherReport& m, nlohmann::json& dense) {
                                     {"place", place_json(g.place)}});
 }
 
+nlohmann::json bricks_json(const BrickReport& bricks) {
+  return {{"cells", bricks.cells},
+          {"count", bricks.bricks},
+          {"repeated", bricks.repeated},
+          {"resumed", bricks.resumed},
+          {"coarse_tets", bricks.coarse_tets},
+          {"scratch_bytes", static_cast<std::uint64_t>(bricks.scratch_bytes)}};
+}
+
 /// Diagnostics of the report, and the error if there is no result.
 std::vector<Diagnostic> diagnostics_of(const CommandRun& ended) {
   std::vector<Diagnostic> all = ended.report.diagnostics;
@@ -416,6 +425,7 @@ std::string stats_json(const CommandRun& ended) {
   j["input"] = input_json(run);
   if (run.dense) j["dense"] = mesh_json(*run.dense, run.material_names, line.options.shapes.bound());
   if (run.mesher) add_mesher_json(*run.mesher, j["dense"]);
+  if (run.bricks) j["dense"]["bricks"] = bricks_json(*run.bricks);
   j["result"] =
       run.result ? mesh_json(*run.result, run.material_names, line.options.shapes.bound()) : nlohmann::json();
   if (run.simplify) j["result"]["held_by_input"] = run.input_limited;
