@@ -265,21 +265,28 @@ std::vector<std::size_t> unconfirmed_bricks(const std::vector<const BrickBorder*
   return unconfirmed;
 }
 
-std::size_t for_each_brick(const BrickMesher& mesher, const std::vector<CellBox>& boxes,
-                           const std::function<const BrickBorder*(std::size_t, int)>& make) {
-  std::vector<const BrickBorder*> borders;
-  for (std::size_t b = 0; b < boxes.size(); ++b) borders.push_back(make(b, mesher.usual_halo()));
+std::size_t make_bricks(const BrickMesher& mesher, const std::vector<CellBox>& boxes,
+                        std::vector<BrickBorder>& borders,
+                        const std::function<void(const std::vector<BrickOrder>&)>& make) {
+  borders.resize(boxes.size());
+  std::vector<BrickOrder> orders;
+  std::vector<const BrickBorder*> all;
+  for (std::size_t b = 0; b < boxes.size(); ++b) {
+    orders.push_back({b, mesher.usual_halo()});
+    all.push_back(&borders[b]);
+  }
+  make(orders);
   const std::array<int, 3>& cells = mesher.frame().cells;
   const int whole = *std::max_element(cells.begin(), cells.end());
   std::size_t repeated = 0;
-  for (std::vector<std::size_t> doubtful; !(doubtful = unconfirmed_bricks(borders)).empty();) {
-    const std::size_t before = repeated;
-    for (const std::size_t b : doubtful) {
-      if (borders[b]->halo >= whole) continue;  // only its neighbours can be wrong
-      borders[b] = make(b, std::min(2 * borders[b]->halo, whole));
-      ++repeated;
-    }
-    TETWRIGHT_CHECK(repeated > before);
+  for (std::vector<std::size_t> doubtful; !(doubtful = unconfirmed_bricks(all)).empty();) {
+    orders.clear();
+    for (const std::size_t b : doubtful)
+      // If it knew the whole volume, only its neighbours can be wrong.
+      if (borders[b].halo < whole) orders.push_back({b, std::min(2 * borders[b].halo, whole)});
+    TETWRIGHT_CHECK(!orders.empty());
+    make(orders);
+    repeated += orders.size();
   }
   return repeated;
 }
@@ -289,15 +296,16 @@ BrickedMesh BrickMesher::mesh_all(int side, MesherReport& report, Progress* prog
   std::vector<BrickMesh> made(boxes.size());
   BrickedMesh all;
   all.bricks = made.size();
-  all.repeated = for_each_brick(*this, boxes, [&](std::size_t b, int halo) {
-    made[b] = mesh(boxes[b], halo, progress);
-    if (progress) progress->update(static_cast<double>(b + 1) / static_cast<double>(made.size()));
-    return &made[b].border;
+  std::vector<BrickBorder> borders;
+  all.repeated = make_bricks(*this, boxes, borders, [&](const std::vector<BrickOrder>& orders) {
+    for (const BrickOrder& order : orders) {
+      made[order.brick] = mesh(boxes[order.brick], order.halo, progress);
+      borders[order.brick] = std::move(made[order.brick].border);
+      if (progress) progress->update(static_cast<double>(order.brick + 1) / static_cast<double>(made.size()));
+    }
   });
-  for (BrickMesh& brick : made) {
-    brick.add_to(report);
-    brick.border.seam = {};
-  }
+  borders = {};
+  for (const BrickMesh& brick : made) brick.add_to(report);
   all.mesh = joined(std::move(made));
   return all;
 }

@@ -97,12 +97,19 @@ class BrickMesher {
 /// \param bricks all bricks of a volume
 std::vector<std::size_t> unconfirmed_bricks(const std::vector<const BrickBorder*>& bricks);
 
-/// Makes all bricks of a volume, and those again whose halo may not have sufficed.
+/// A brick to be made.
+struct BrickOrder {
+  std::size_t brick;  ///< its index
+  int halo;           ///< as for BrickMesher::mesh()
+};
+
+/// Has all bricks of a volume made, and those again whose halo may not have sufficed.
 /// \param boxes of whole root cells, which fill the frame
-/// \param make meshes a brick, given its index and its halo; the result must stay valid until the brick is
-///   made again
+/// \param borders receives the bricks' borders, which `make` sets
+/// \param make makes bricks; each of them at most once in a call
 /// \return how many times a brick was made again
-std::size_t for_each_brick(const BrickMesher& mesher, const std::vector<CellBox>& boxes,
-                           const std::function<const BrickBorder*(std::size_t, int)>& make);
+std::size_t make_bricks(const BrickMesher& mesher, const std::vector<CellBox>& boxes,
+                        std::vector<BrickBorder>& borders,
+                        const std::function<void(const std::vector<BrickOrder>&)>& make);
 
 }  // namespace tetwright

@@ -82,9 +82,12 @@ std::vector<BrickMesh> confirmed(const BrickMesher& mesher, const std::vector<Ce
   const ThreadLimit one(1);
   std::vector<BrickMesh> bricks(boxes.size());
   tally.bricks += bricks.size();
-  tally.repeated += for_each_brick(mesher, boxes, [&](std::size_t b, int halo) {
-    bricks[b] = mesher.mesh(boxes[b], halo, nullptr);
-    return &bricks[b].border;
+  std::vector<BrickBorder> borders;
+  tally.repeated += make_bricks(mesher, boxes, borders, [&](const std::vector<BrickOrder>& orders) {
+    for (const BrickOrder& order : orders) {
+      bricks[order.brick] = mesher.mesh(boxes[order.brick], order.halo, nullptr);
+      borders[order.brick] = bricks[order.brick].border;
+    }
   });
   return bricks;
 }

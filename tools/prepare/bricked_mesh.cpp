@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,7 @@
 #include "tools/bricks/brick_bytes.h"
 #include "tools/bricks/brick_part.h"
 #include "tools/bricks/brick_scratch.h"
+#include "tools/bricks/brick_team.h"
 #include "tools/bricks/gathered_mesh.h"
 
 namespace tetwright {
@@ -99,18 +101,32 @@ class Bricks {
     report.bricks = count;
   }
 
-  /// The border of a brick with this halo, or a larger one if a file has it.
-  /// \param make makes the brick
-  const BrickBorder* border(std::size_t brick, int halo, const std::function<BrickPart()>& make) {
-    BrickPart& part = parts_[brick];
-    if (!(scratch_ && scratch_->has(brick) && read(brick, halo))) {
-      part = make();
-      if (scratch_) {
-        scratch_->write(brick, to_bytes(part));
-        forget(brick);
-      }
+  /// Whether a file has a brick with this halo, or a larger one; its border.
+  std::optional<BrickBorder> finished(const BrickOrder& order) {
+    if (!scratch_ || !scratch_->has(order.brick)) return {};
+    try {
+      BrickPart part = brick_part(scratch_->read(order.brick), scratch_->file(order.brick));
+      if (part.border.halo < order.halo) return {};
+      ++report_.resumed;
+      return std::move(part.border);
+    } catch (const InputError&) {
+      return {};  // damaged: it is made again
     }
-    return &part.border;
+  }
+
+  /// Keeps a brick and returns its border.
+  BrickBorder keep(std::size_t brick, BrickPart part) {
+    if (scratch_) return keep(brick, to_bytes(part));
+    BrickBorder border = std::move(part.border);
+    part.border = {};
+    parts_[brick] = std::move(part);
+    return border;
+  }
+  BrickBorder keep(std::size_t brick, const std::string& bytes) {
+    if (scratch_) scratch_->write(brick, bytes);
+    BrickPart part = brick_part(bytes, "brick " + std::to_string(brick));
+    if (!scratch_) return keep(brick, std::move(part));
+    return std::move(part.border);
   }
 
   /// All parts.
@@ -125,25 +141,6 @@ class Bricks {
   }
 
  private:
-  /// Reads a finished brick; false if it is damaged or its halo is too small.
-  bool read(std::size_t brick, int halo) {
-    try {
-      parts_[brick] = brick_part(scratch_->read(brick), scratch_->file(brick));
-    } catch (const InputError&) {
-      return false;  // made again
-    }
-    forget(brick);
-    const bool suffices = parts_[brick].border.halo >= halo;
-    report_.resumed += suffices;
-    return suffices;
-  }
-  /// Keeps only the border of a brick that is in a file.
-  void forget(std::size_t brick) {
-    BrickBorder border = std::move(parts_[brick].border);
-    parts_[brick] = {};
-    parts_[brick].border = std::move(border);
-  }
-
   std::unique_ptr<const BrickScratch> scratch_;
   std::vector<BrickPart> parts_;
   BrickReport& report_;
@@ -158,7 +155,8 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, int side,
   bricks.cells = side;
   bricks.scratch = run.options.bricks.scratch;
   std::unique_ptr<const BrickScratch> scratch;
-  if (!bricks.scratch.empty())
+  const bool leads = !run.options.bricks.team || run.options.bricks.team->is_leader();
+  if (!bricks.scratch.empty() && leads)
     scratch = std::make_unique<BrickScratch>(bricks.scratch, describe(labels, options, side, run));
   Stages stages(&run.progress);
   stages.begin("signed distances");
@@ -174,14 +172,44 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, int side,
   const double density =
       static_cast<double>(*run.options.target.tets) / meshed_volume(labels, options.keep_outside);
   const CoarsenOptions coarsening = coarsen_options(run.options, run.report.inputs.front());
+  const auto make = [&](const BrickOrder& order) {
+    return make_brick_part(mesher, boxes[order.brick], order.halo, density, coarsening,
+                           run.options.shapes.bound(), &run.progress);
+  };
+  BrickTeam* const team = run.options.bricks.team;
+  if (team && !team->is_leader()) {
+    team->help(make);
+    throw HelperFinished();
+  }
   Bricks all(boxes.size(), std::move(scratch), bricks);
-  bricks.repeated = for_each_brick(mesher, boxes, [&](std::size_t b, int halo) {
-    run.progress.update(static_cast<double>(b) / static_cast<double>(boxes.size()));
-    return all.border(b, halo, [&] {
-      return make_brick_part(mesher, boxes[b], halo, density, coarsening, run.options.shapes.bound(),
-                             &run.progress);
-    });
+  std::vector<BrickBorder> borders;
+  bricks.repeated = make_bricks(mesher, boxes, borders, [&](const std::vector<BrickOrder>& orders) {
+    std::vector<BrickOrder> left;
+    for (const BrickOrder& order : orders)
+      if (std::optional<BrickBorder> border = all.finished(order))
+        borders[order.brick] = std::move(*border);
+      else
+        left.push_back(order);
+    std::size_t done = orders.size() - left.size();
+    const auto show = [&] {
+      run.progress.update(static_cast<double>(done) / static_cast<double>(orders.size()));
+    };
+    show();
+    if (team) {
+      team->lead(left, make, [&](std::size_t brick, const std::string& bytes) {
+        borders[brick] = all.keep(brick, bytes);
+        ++done;
+        show();
+      });
+      return;
+    }
+    for (const BrickOrder& order : left) {
+      borders[order.brick] = all.keep(order.brick, make(order));
+      ++done;
+      show();
+    }
   });
+  if (team) team->end();
   stages.begin("joining bricks");
   std::vector<BrickPart> parts = std::move(all).take();
   for (const BrickPart& part : parts) {

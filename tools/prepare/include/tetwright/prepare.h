@@ -167,6 +167,8 @@ struct BodyOptions {
   bool split_solids = false;
 };
 
+class BrickTeam;
+
 /// Meshing and coarsening of a segmented volume in bricks, so that its dense mesh is never in memory at once.
 /// For prepare().
 struct BrickOptions {
@@ -182,8 +184,10 @@ struct BrickOptions {
   /// Folder for finished bricks, made if it does not exist: they need no memory until all are finished, and a
   /// job that was stopped goes on from them. Empty: in memory.
   std::string scratch;
+  /// Processes that make the bricks together; null: this one alone. Must outlive the call.
+  BrickTeam* team = nullptr;
 };
-inline constexpr int min_brick_cells = 32, max_brick_cells = 1024;
+inline constexpr int min_brick_cells = 32, max_brick_cells = 1024, default_brick_cells = 128;
 
 /// Default of LabelOptions::min_voxels.
 inline constexpr std::size_t default_min_voxels = 8;

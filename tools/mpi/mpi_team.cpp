@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/mpi/mpi_team.h"
+
+#include <mpi.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+#include <exception>
+#include <string>
+#include <thread>
+
+#include "tetwright/error.h"
+#include "tools/app/exit_status.h"
+#include "tools/bricks/brick_bytes.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Kinds of messages.
+enum Tag : int {
+  ask,      ///< helper to leader: which brick next?
+  answer,   ///< leader to helper: an Answer
+  size,     ///< helper to leader: a Size, followed by the brick's bytes
+  bytes,    ///< helper to leader: at most max_message of them
+  failure,  ///< helper to leader: exit status, followed by a text
+  text,     ///< helper to leader
+  leave     ///< leader to helper: the program ends
+};
+
+using Answer = std::array<std::int64_t, 2>;  ///< brick and halo
+using Size = std::array<std::int64_t, 2>;    ///< brick and number of bytes
+constexpr std::int64_t no_brick = -1;
+
+/// Bytes: MPI counts them by an int.
+constexpr std::size_t max_message = std::size_t{1} << 30;
+
+/// Short beside the time of a brick, long beside that of a look.
+constexpr std::chrono::milliseconds between_looks(2);
+
+template <class Numbers>
+void send(const Numbers& numbers, int to, Tag tag) {
+  MPI_Send(numbers.data(), static_cast<int>(numbers.size()), MPI_INT64_T, to, tag, MPI_COMM_WORLD);
+}
+
+template <class Numbers>
+Numbers receive_numbers(int from, Tag tag) {
+  Numbers numbers{};
+  MPI_Recv(numbers.data(), static_cast<int>(numbers.size()), MPI_INT64_T, from, tag, MPI_COMM_WORLD,
+           MPI_STATUS_IGNORE);
+  return numbers;
+}
+
+void send_bytes(const std::string& all, int to, Tag tag) {
+  for (std::size_t at = 0; at < all.size(); at += max_message)
+    MPI_Send(all.data() + at, static_cast<int>(std::min(max_message, all.size() - at)), MPI_BYTE, to, tag,
+             MPI_COMM_WORLD);
+}
+
+std::string receive_bytes(std::size_t size, int from, Tag tag) {
+  std::string all(size, '\0');
+  for (std::size_t at = 0; at < size; at += max_message)
+    MPI_Recv(all.data() + at, static_cast<int>(std::min(max_message, size - at)), MPI_BYTE, from, tag,
+             MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  return all;
+}
+
+/// Whether a message has arrived that begins an exchange.
+bool arrived(int from, int tag, MPI_Status& status) {
+  int flag = 0;
+  MPI_Iprobe(from, tag, MPI_COMM_WORLD, &flag, &status);
+  return flag != 0;
+}
+
+/// Waits for a message without occupying a core.
+void wait_for(int from, int tag) {
+  MPI_Status status;
+  while (!arrived(from, tag, status)) std::this_thread::sleep_for(between_looks);
+}
+
+/// Throws what the failure of a helper would have been here.
+[[noreturn]] void fail_as(int rank, int status, const std::string& message) {
+  const std::string what = message + " (rank " + std::to_string(rank) + ")";
+  switch (static_cast<ExitStatus>(status)) {
+    case ExitStatus::usage:
+      throw UsageError(what);
+    case ExitStatus::bad_input:
+      throw InputError(what);
+    case ExitStatus::nothing_to_mesh:
+      throw NothingToMeshError(what);
+    case ExitStatus::interrupted:
+      throw Interrupted();
+    case ExitStatus::internal_error:
+      throw InternalError(what);
+    default:
+      throw OutputError(what);
+  }
+}
+
+}  // namespace
+
+/// What the leader's thread does while bricks are made.
+class MpiTeam::Service {
+ public:
+  Service(MpiTeam& team, std::deque<BrickOrder> orders, const Receive& receive)
+      : team_(team), orders_(std::move(orders)), left_(orders_.size()), receive_(receive) {}
+
+  /// The next brick for the leader, if there is one.
+  bool next(BrickOrder& order) {
+    const std::lock_guard guard(mutex_);
+    if (orders_.empty() || failed_) return false;
+    order = orders_.front();
+    orders_.pop_front();
+    return true;
+  }
+  /// Passes on a brick that has been made.
+  void deliver(std::size_t brick, const std::string& data) {
+    const std::lock_guard guard(mutex_);
+    receive_(brick, data);
+    --left_;
+  }
+  void stop() { failed_ = true; }
+
+  /// Answers helpers until all bricks have been delivered.
+  void run() {
+    try {
+      while (left_ > 0 && !failed_) {
+        answer_waiting();
+        MPI_Status status;
+        if (arrived(MPI_ANY_SOURCE, ask, status)) {
+          MPI_Recv(nullptr, 0, MPI_BYTE, status.MPI_SOURCE, ask, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+          team_.waiting_.push_back(status.MPI_SOURCE);
+        } else if (arrived(MPI_ANY_SOURCE, size, status)) {
+          const auto [brick, count] = receive_numbers<Size>(status.MPI_SOURCE, size);
+          deliver(static_cast<std::size_t>(brick),
+                  receive_bytes(static_cast<std::size_t>(count), status.MPI_SOURCE, bytes));
+        } else if (arrived(MPI_ANY_SOURCE, failure, status)) {
+          const auto [code, count] = receive_numbers<Size>(status.MPI_SOURCE, failure);
+          fail_as(status.MPI_SOURCE, static_cast<int>(code),
+                  receive_bytes(static_cast<std::size_t>(count), status.MPI_SOURCE, text));
+        } else {
+          std::this_thread::sleep_for(between_looks);
+        }
+      }
+    } catch (...) {
+      error_ = std::current_exception();
+      failed_ = true;
+    }
+  }
+  void rethrow() const {
+    if (error_) std::rethrow_exception(error_);
+  }
+
+ private:
+  void answer_waiting() {
+    BrickOrder order{};
+    while (!team_.waiting_.empty() && next(order)) {
+      team_.give(team_.waiting_.front(), order);
+      team_.waiting_.pop_front();
+    }
+  }
+
+  MpiTeam& team_;
+  std::mutex mutex_;  ///< of orders_ and receive_
+  std::deque<BrickOrder> orders_;
+  std::atomic<std::size_t> left_;
+  std::atomic<bool> failed_ = false;
+  std::exception_ptr error_;
+  const Receive& receive_;
+};
+
+MpiTeam::MpiTeam() {
+  MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
+  MPI_Comm_size(MPI_COMM_WORLD, &size_);
+}
+
+void MpiTeam::give(int helper, const BrickOrder& order) const {
+  send(Answer{static_cast<std::int64_t>(order.brick), order.halo}, helper, answer);
+}
+
+void MpiTeam::lead(const std::vector<BrickOrder>& orders, const Make& make, const Receive& receive) {
+  Service service(*this, {orders.begin(), orders.end()}, receive);
+  std::thread thread([&] { service.run(); });
+  std::exception_ptr error;
+  try {
+    for (BrickOrder order{}; service.next(order);) service.deliver(order.brick, to_bytes(make(order)));
+  } catch (...) {
+    error = std::current_exception();
+    service.stop();
+  }
+  thread.join();
+  if (error) std::rethrow_exception(error);
+  service.rethrow();
+}
+
+void MpiTeam::end() {
+  for (int left = size_ - 1; left > 0; --left) {
+    if (waiting_.empty()) {
+      MPI_Status status;
+      wait_for(MPI_ANY_SOURCE, ask);
+      MPI_Recv(nullptr, 0, MPI_BYTE, MPI_ANY_SOURCE, ask, MPI_COMM_WORLD, &status);
+      waiting_.push_back(status.MPI_SOURCE);
+    }
+    send(Answer{no_brick, 0}, waiting_.front(), answer);
+    waiting_.pop_front();
+  }
+}
+
+void MpiTeam::help(const Make& make) {
+  for (;;) {
+    MPI_Send(nullptr, 0, MPI_BYTE, 0, ask, MPI_COMM_WORLD);
+    wait_for(0, answer);
+    const auto [brick, halo] = receive_numbers<Answer>(0, answer);
+    if (brick == no_brick) return;
+    const std::string data = to_bytes(make({static_cast<std::size_t>(brick), static_cast<int>(halo)}));
+    send(Size{brick, static_cast<std::int64_t>(data.size())}, 0, size);
+    send_bytes(data, 0, bytes);
+  }
+}
+
+void MpiTeam::report(int status, const std::string& message) {
+  send(Size{status, static_cast<std::int64_t>(message.size())}, 0, failure);
+  send_bytes(message, 0, text);
+}
+
+void MpiTeam::part() {
+  if (is_leader()) {
+    for (int helper = 1; helper < size_; ++helper)
+      MPI_Send(nullptr, 0, MPI_BYTE, helper, leave, MPI_COMM_WORLD);
+  } else {
+    wait_for(0, leave);
+    MPI_Recv(nullptr, 0, MPI_BYTE, 0, leave, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+  }
+}
+
+}  // namespace tetwright

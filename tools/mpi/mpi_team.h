@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <deque>
+#include <mutex>
+#include <vector>
+
+#include "tools/bricks/brick_team.h"
+
+namespace tetwright {
+
+/// The ranks of MPI_COMM_WORLD; rank 0 leads.
+///
+/// Helpers ask for a brick, receive its number, and send its bytes before they ask again. A thread of the
+/// leader answers them while the leader makes bricks itself: until it has ended, no other thread of the
+/// leader calls MPI (MPI_THREAD_SERIALIZED). Both sides sleep between looks at what has arrived, since MPI's
+/// own waiting would occupy a core.
+class MpiTeam final : public BrickTeam {
+ public:
+  MpiTeam();
+
+  bool is_leader() const override { return rank_ == 0; }
+  void lead(const std::vector<BrickOrder>& orders, const Make& make, const Receive& receive) override;
+  void end() override;
+  void help(const Make& make) override;
+  void report(int status, const std::string& message) override;
+  /// Waits in a helper, and tells the helpers in the leader, that the program ends.
+  void part();
+
+ private:
+  class Service;
+  /// Answers a helper that has asked for a brick.
+  void give(int helper, const BrickOrder& order) const;
+
+  int rank_ = 0, size_ = 1;
+  std::deque<int> waiting_;  ///< helpers that have asked and were not answered yet
+};
+
+}  // namespace tetwright
