@@ -55,7 +55,6 @@ VolumeField make_volume_field(const LabelInput& labels, const MesherOptions& opt
   const GridFrame voxels = label_frame(labels, report.cell_size, options.uniform);
   ThinLabels thin;
   if (!options.uniform) thin = find_thin_labels(labels, voxels, progress);
-  validate_estimate(estimate_mesh(labels, options, ThinCells()));
   VolumeField made;
   made.field = LabelField::make(labels, voxels, options.keep_outside, progress);
   drop_redundant_cells(thin.finer, *made.field, thin.island_levels, largest_redundant_cell(labels, voxels),
@@ -88,6 +87,8 @@ DenseMesh mesh_labels(const LabelInput& labels, const MesherOptions& options, Pr
   MesherReport report;
   Stages stages(progress);
   stages.begin("signed distances");
+  // Before the time that the signed distances take.
+  validate_estimate(estimate_mesh(labels, options, ThinCells()));
   VolumeField volume = make_volume_field(labels, options, report, progress);
   validate_estimate(report.estimate);
   report.seconds_sdf = stages.seconds();

@@ -21,7 +21,6 @@ struct VolumeField {
 /// Computes the distances of the labels and finds the cells that are halved.
 /// \param report receives cell size, estimate, thin parts and creases
 /// \throws UsageError for options that conflict with the labels
-/// \throws OutputError if the mesh would be too large for the memory even without halved cells
 /// \throws Interrupted
 VolumeField make_volume_field(const LabelInput& labels, const MesherOptions& options, MesherReport& report,
                               Progress* progress);

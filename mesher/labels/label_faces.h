@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
+
 #include "tetwright/mesher_input.h"
 
 namespace tetwright {
@@ -13,5 +15,9 @@ struct FaceAreas {
 
 /// Runs in parallel; the result does not depend on the number of threads.
 FaceAreas face_areas(const LabelInput& labels);
+
+/// The volume is divided into boxes of this many voxels along each axis: the largest share of the faces
+/// between voxels of different regions that one of them has; 1 if there are none. Parallel.
+double largest_share_of_faces(const LabelInput& labels, const std::array<double, 3>& box);
 
 }  // namespace tetwright

@@ -166,6 +166,8 @@ void print_bricks(const BrickReport& bricks) {
   std::printf("%zu bricks of %d cells (--bricks %d)", bricks.bricks, bricks.cells, bricks.cells);
   if (bricks.resumed > 0) std::printf(", %zu of them finished before", bricks.resumed);
   if (bricks.repeated > 0) std::printf(", %zu made again with more cells around them", bricks.repeated);
+  if (bricks.surfaces_kept > 0)
+    std::printf(", %zu whose boundary is kept, as others are too near", bricks.surfaces_kept);
   std::printf(": %zu tets coarsened\n", bricks.coarse_tets);
 }
 

@@ -105,7 +105,8 @@ class ByteReader {
 /// Passes all members of a part to a writer or a reader, in a fixed order.
 template <class Archive, class Part, class Statistics>
 void archive(Archive& members, Part& part, Statistics& dense) {
-  members(part.border.brick, part.border.halo, part.border.seam.offered, part.border.seam.needed);
+  members(part.border.brick, part.border.halo, part.kept_surface, part.border.seam.offered,
+          part.border.seam.needed);
   members(part.mesh.points, part.mesh.tets, part.mesh.materials, part.mesh.interfaces, part.flags);
   members(part.surface.points, part.surface.interfaces, part.surface_shared, part.cut_faces);
   members(part.leaves, part.lattice_tets, part.isolated_vertices);

@@ -47,10 +47,11 @@ std::vector<std::uint8_t> flags_of(const TetMesh& mesh, const std::vector<Vec3>&
 
 }  // namespace
 
-BrickPart make_brick_part(const BrickMesher& mesher, const CellBox& brick, int halo, double density,
-                          CoarsenOptions options, double threshold, Progress* progress) {
+BrickPart make_brick_part(const BrickMesher& mesher, const CellBox& box, const BrickTask& task,
+                          double density, CoarsenOptions options, double threshold, Progress* progress) {
   BrickPart part;
-  BrickMesh made = mesher.mesh(brick, halo, progress);
+  part.kept_surface = task.keep_surface;
+  BrickMesh made = mesher.mesh(box, task.halo, progress);
   part.border = std::move(made.border);
   part.leaves = made.leaves;
   part.lattice_tets = made.lattice_tets;
@@ -70,6 +71,10 @@ BrickPart make_brick_part(const BrickMesher& mesher, const CellBox& brick, int h
   options.target_tets = density * part.dense.volume;
   options.reference = dense.reference.get();
   options.frozen = std::move(made.shared);
+  if (task.keep_surface)
+    for (const InterfaceTriangle& t : dense.mesh.interfaces)
+      if (!t.other && t.patch == 0)
+        for (const Index p : t.ids) options.frozen[p] = 1;
   part.mesh = coarsen(std::move(dense.mesh), options, nullptr, progress);
   part.flags = flags_of(part.mesh, shared);
   std::erase_if(part.mesh.interfaces, [](const InterfaceTriangle& t) { return t.patch == 0; });

@@ -15,6 +15,7 @@ namespace tetwright {
 /// dense one. Lengths in input units.
 struct BrickPart {
   BrickBorder border;
+  bool kept_surface = false;  ///< BrickTask::keep_surface
   /// Coarsened. Its interfaces are only the faces with a patch: those on the border of the volume.
   TetMesh mesh;
   /// By point of `mesh`: `shared` if other bricks may have it, `on_interface` if it lies on an interface, on
@@ -33,13 +34,21 @@ struct BrickPart {
   std::size_t leaves = 0, lattice_tets = 0, isolated_vertices = 0;
 };
 
+/// A brick to be meshed and coarsened.
+struct BrickTask {
+  std::size_t brick = 0;  ///< its index
+  int halo = 0;           ///< as for BrickMesher::mesh()
+  /// Do not coarsen the boundary to the outside: it would meet that of another brick.
+  bool keep_surface = false;
+};
+
 /// Meshes and coarsens a brick.
-/// \param halo as for BrickMesher::mesh()
+/// \param box of the brick
 /// \param density final tets per volume, input units
 /// \param options its target and its frozen points are not used
 /// \param threshold for the statistics, steradians
 /// \throws Interrupted, OutOfTime
-BrickPart make_brick_part(const BrickMesher& mesher, const CellBox& brick, int halo, double density,
-                          CoarsenOptions options, double threshold, Progress* progress);
+BrickPart make_brick_part(const BrickMesher& mesher, const CellBox& box, const BrickTask& task,
+                          double density, CoarsenOptions options, double threshold, Progress* progress);
 
 }  // namespace tetwright

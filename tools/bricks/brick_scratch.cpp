@@ -26,6 +26,10 @@ constexpr const char* brick_suffix = ".tetwright";
 /// Of the temporary files of OutputFiles.
 constexpr const char *temporary_prefix = ".tetwright-", *temporary_suffix = ".tmp";
 
+bool is_brick(const std::string& name) {
+  return name.starts_with(brick_prefix) && name.ends_with(brick_suffix);
+}
+
 /// Checks that a job of a folder is this one.
 void check_job(const fs::path& path, const nlohmann::ordered_json& job) {
   const std::string file = path.string();
@@ -96,14 +100,24 @@ double BrickScratch::free_bytes() const {
   return error ? 0 : static_cast<double>(space.available);
 }
 
+double BrickScratch::used_bytes() const {
+  double bytes = 0;
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, error))
+    if (is_brick(entry.path().filename().string())) {
+      const std::uintmax_t size = entry.file_size(error);
+      if (!error) bytes += static_cast<double>(size);
+    }
+  return bytes;
+}
+
 void remove_brick_scratch(const std::string& folder) noexcept {
   if (folder.empty()) return;
   try {
     std::error_code error;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
       const std::string name = entry.path().filename().string();
-      if (name == job_file || (name.starts_with(brick_prefix) && name.ends_with(brick_suffix)))
-        fs::remove(entry.path(), error);
+      if (name == job_file || is_brick(name)) fs::remove(entry.path(), error);
     }
     fs::remove(folder, error);
   } catch (const std::exception&) {

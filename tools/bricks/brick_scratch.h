@@ -32,8 +32,9 @@ class BrickScratch {
   void write(std::size_t brick, const std::string& bytes) const;
   /// \throws InputError if the file cannot be read
   std::string read(std::size_t brick) const;
-  /// Space for more files, bytes.
+  /// Space for more files, and of the files of bricks there are; bytes.
   double free_bytes() const;
+  double used_bytes() const;
 
  private:
   std::string folder_;

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "mesher/brick_mesher.h"
 #include "tools/bricks/brick_part.h"
 
 namespace tetwright {
@@ -15,7 +14,7 @@ namespace tetwright {
 /// options; one, the leader, gathers the bricks and does everything else.
 class BrickTeam {
  public:
-  using Make = std::function<BrickPart(const BrickOrder&)>;
+  using Make = std::function<BrickPart(const BrickTask&)>;
   /// Receives a brick's to_bytes().
   using Receive = std::function<void(std::size_t brick, const std::string& bytes)>;
 
@@ -25,7 +24,7 @@ class BrickTeam {
   /// \param make makes a brick in this process
   /// \param receive is called for one brick at a time
   /// \throws what `make` and `receive` throw, OutputError for errors of other members
-  virtual void lead(const std::vector<BrickOrder>& orders, const Make& make, const Receive& receive) = 0;
+  virtual void lead(const std::vector<BrickTask>& tasks, const Make& make, const Receive& receive) = 0;
   /// The leader has all bricks: helpers may leave.
   virtual void end() = 0;
   /// The other members' part: makes bricks until the leader has all.

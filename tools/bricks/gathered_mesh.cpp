@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "common/geometry/self_intersection.h"
 #include "common/mesh/point_joining.h"
 #include "common/parallel/parallel_sort.h"
 #include "tetwright/error.h"
@@ -101,8 +102,8 @@ void drop_unused_points(TetMesh& surface) {
   surface.points = std::move(points);
 }
 
-/// Joins the surfaces of the dense meshes and frees them.
-TetMesh joined_surface(std::vector<BrickPart>& parts) {
+/// Joins the surfaces of the dense meshes.
+TetMesh joined_surface(const std::vector<BrickPart>& parts) {
   std::vector<PiecePoints> pieces;
   for (const BrickPart& part : parts) pieces.push_back({part.surface.points, part.surface_shared});
   const JoinedPoints points = join_points(pieces);
@@ -111,15 +112,14 @@ TetMesh joined_surface(std::vector<BrickPart>& parts) {
   std::vector<KeyedFace> cut;
   for (std::size_t b = 0; b < parts.size(); ++b) {
     const std::vector<Index>& numbers = points.numbers[b];
-    const TetMesh surface = std::move(parts[b].surface);
-    const std::vector<InterfaceTriangle> cut_faces = std::move(parts[b].cut_faces);
+    const TetMesh& surface = parts[b].surface;
     for (std::size_t p = 0; p < numbers.size(); ++p) all.points[numbers[p]] = surface.points[p];
     const auto renumbered = [&](InterfaceTriangle t) {
       for (Index& p : t.ids) p = numbers[p];
       return t;
     };
     for (const InterfaceTriangle& t : surface.interfaces) all.interfaces.push_back(renumbered(t));
-    for (const InterfaceTriangle& t : cut_faces) {
+    for (const InterfaceTriangle& t : parts[b].cut_faces) {
       const InterfaceTriangle face = renumbered(t);
       cut.push_back({ascending(face.ids), face});
     }
@@ -129,11 +129,38 @@ TetMesh joined_surface(std::vector<BrickPart>& parts) {
   return all;
 }
 
+/// GatheredMesh::meeting.
+/// \param brick_of the brick of a boundary face, or the number of bricks if none has moved it
+template <class BrickOf>
+std::vector<std::size_t> meeting_bricks(const TetMesh& mesh, const BrickOf& brick_of) {
+  std::vector<Triangle> boundary;
+  std::vector<std::size_t> bricks;
+  bool any = false;
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    if (!t.other) {
+      boundary.push_back(t.ids);
+      bricks.push_back(brick_of(t));
+      any |= t.patch == 0;
+    }
+  std::vector<std::size_t> meeting;
+  if (!any) return meeting;  // the border of the volume is flat
+  for (const auto& [first, second] : self_intersections(mesh.points, boundary))
+    if (bricks[first] != bricks[second]) meeting.insert(meeting.end(), {bricks[first], bricks[second]});
+  std::sort(meeting.begin(), meeting.end());
+  meeting.erase(std::unique(meeting.begin(), meeting.end()), meeting.end());
+  return meeting;
+}
+
 }  // namespace
 
-GatheredMesh gather(std::vector<BrickPart> parts, std::map<MaterialTag, std::string> names) {
+GatheredMesh gather(const std::vector<BrickPart>& parts, std::map<MaterialTag, std::string> names) {
   GatheredMesh all;
   all.dense = statistics_of(parts);
+  for (const BrickPart& part : parts) {
+    all.leaves += part.leaves;
+    all.lattice_tets += part.lattice_tets;
+    all.isolated_vertices += part.isolated_vertices;
+  }
   all.original.surface = joined_surface(parts);
   MeshStatistics faces = mesh_statistics(all.original.surface);
   all.dense.interfaces = std::move(faces.interfaces);
@@ -154,14 +181,16 @@ GatheredMesh gather(std::vector<BrickPart> parts, std::map<MaterialTag, std::str
   mesh.tets.reserve(tets);
   mesh.materials.reserve(tets);
   std::vector<std::uint8_t> candidates(points.count), shared_points(points.count);
+  std::vector<std::uint32_t> brick_of_point(points.count);
   std::vector<KeyedFace> patched;
   for (std::size_t b = 0; b < parts.size(); ++b) {
-    const TetMesh part = std::move(parts[b].mesh);
+    const TetMesh& part = parts[b].mesh;
     const std::vector<Index> numbers = std::move(points.numbers[b]);
     for (std::size_t p = 0; p < numbers.size(); ++p) {
       mesh.points[numbers[p]] = part.points[p];
       candidates[numbers[p]] |= parts[b].flags[p];
       shared_points[numbers[p]] = shared[b][p];
+      brick_of_point[numbers[p]] = static_cast<std::uint32_t>(b);
     }
     for (Tet t : part.tets) {
       for (Index& p : t) p = numbers[p];
@@ -179,6 +208,11 @@ GatheredMesh gather(std::vector<BrickPart> parts, std::map<MaterialTag, std::str
   mesh.interfaces = find_interfaces(mesh, &candidates);
   set_patches(std::move(patched), mesh.interfaces);
   mesh.material_names = std::move(names);
+  all.meeting = meeting_bricks(mesh, [&](const InterfaceTriangle& t) {
+    // A face of shared points alone was not moved.
+    const auto moved = std::find_if(t.ids.begin(), t.ids.end(), [&](Index p) { return !shared_points[p]; });
+    return moved == t.ids.end() ? parts.size() : brick_of_point[*moved];
+  });
   for (const auto& [tag, material] : all.dense.materials) all.original.volumes[tag] = material.volume;
   all.original.tets = all.dense.tets;
   return all;

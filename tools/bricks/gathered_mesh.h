@@ -14,11 +14,15 @@ struct GatheredMesh {
   TetMesh mesh;  ///< input units, with its interfaces
   OriginalMesh original;
   MeshStatistics dense;  ///< of the original mesh; see BrickPart::dense for the histogram
+  std::size_t leaves = 0, lattice_tets = 0, isolated_vertices = 0;
+  /// Bricks, ascending, whose boundary meets that of another one, since both were moved: nothing else can
+  /// intersect across a cut, where no face is moved. They must be made again with BrickTask::keep_surface.
+  std::vector<std::size_t> meeting;
 };
 
-/// Joins the parts of all bricks of a volume, and frees them.
+/// Joins the parts of all bricks of a volume.
 /// \param parts in the order of BrickMesher::bricks()
 /// \param names of the materials
-GatheredMesh gather(std::vector<BrickPart> parts, std::map<MaterialTag, std::string> names);
+GatheredMesh gather(const std::vector<BrickPart>& parts, std::map<MaterialTag, std::string> names);
 
 }  // namespace tetwright

@@ -31,7 +31,7 @@ enum Tag : int {
   leave     ///< leader to helper: the program ends
 };
 
-using Answer = std::array<std::int64_t, 2>;  ///< brick and halo
+using Answer = std::array<std::int64_t, 3>;  ///< the members of a BrickTask
 using Size = std::array<std::int64_t, 2>;    ///< brick and number of bytes
 constexpr std::int64_t no_brick = -1;
 
@@ -105,15 +105,15 @@ void wait_for(int from, int tag) {
 /// What the leader's thread does while bricks are made.
 class MpiTeam::Service {
  public:
-  Service(MpiTeam& team, std::deque<BrickOrder> orders, const Receive& receive)
-      : team_(team), orders_(std::move(orders)), left_(orders_.size()), receive_(receive) {}
+  Service(MpiTeam& team, std::deque<BrickTask> tasks, const Receive& receive)
+      : team_(team), tasks_(std::move(tasks)), left_(tasks_.size()), receive_(receive) {}
 
   /// The next brick for the leader, if there is one.
-  bool next(BrickOrder& order) {
+  bool next(BrickTask& task) {
     const std::lock_guard guard(mutex_);
-    if (orders_.empty() || failed_) return false;
-    order = orders_.front();
-    orders_.pop_front();
+    if (tasks_.empty() || failed_) return false;
+    task = tasks_.front();
+    tasks_.pop_front();
     return true;
   }
   /// Passes on a brick that has been made.
@@ -156,16 +156,16 @@ class MpiTeam::Service {
 
  private:
   void answer_waiting() {
-    BrickOrder order{};
-    while (!team_.waiting_.empty() && next(order)) {
-      team_.give(team_.waiting_.front(), order);
+    BrickTask task{};
+    while (!team_.waiting_.empty() && next(task)) {
+      team_.give(team_.waiting_.front(), task);
       team_.waiting_.pop_front();
     }
   }
 
   MpiTeam& team_;
-  std::mutex mutex_;  ///< of orders_ and receive_
-  std::deque<BrickOrder> orders_;
+  std::mutex mutex_;  ///< of tasks_ and receive_
+  std::deque<BrickTask> tasks_;
   std::atomic<std::size_t> left_;
   std::atomic<bool> failed_ = false;
   std::exception_ptr error_;
@@ -177,16 +177,16 @@ MpiTeam::MpiTeam() {
   MPI_Comm_size(MPI_COMM_WORLD, &size_);
 }
 
-void MpiTeam::give(int helper, const BrickOrder& order) const {
-  send(Answer{static_cast<std::int64_t>(order.brick), order.halo}, helper, answer);
+void MpiTeam::give(int helper, const BrickTask& task) const {
+  send(Answer{static_cast<std::int64_t>(task.brick), task.halo, task.keep_surface}, helper, answer);
 }
 
-void MpiTeam::lead(const std::vector<BrickOrder>& orders, const Make& make, const Receive& receive) {
-  Service service(*this, {orders.begin(), orders.end()}, receive);
+void MpiTeam::lead(const std::vector<BrickTask>& tasks, const Make& make, const Receive& receive) {
+  Service service(*this, {tasks.begin(), tasks.end()}, receive);
   std::thread thread([&] { service.run(); });
   std::exception_ptr error;
   try {
-    for (BrickOrder order{}; service.next(order);) service.deliver(order.brick, to_bytes(make(order)));
+    for (BrickTask task{}; service.next(task);) service.deliver(task.brick, to_bytes(make(task)));
   } catch (...) {
     error = std::current_exception();
     service.stop();
@@ -204,7 +204,7 @@ void MpiTeam::end() {
       MPI_Recv(nullptr, 0, MPI_BYTE, MPI_ANY_SOURCE, ask, MPI_COMM_WORLD, &status);
       waiting_.push_back(status.MPI_SOURCE);
     }
-    send(Answer{no_brick, 0}, waiting_.front(), answer);
+    send(Answer{no_brick, 0, 0}, waiting_.front(), answer);
     waiting_.pop_front();
   }
 }
@@ -213,9 +213,10 @@ void MpiTeam::help(const Make& make) {
   for (;;) {
     MPI_Send(nullptr, 0, MPI_BYTE, 0, ask, MPI_COMM_WORLD);
     wait_for(0, answer);
-    const auto [brick, halo] = receive_numbers<Answer>(0, answer);
+    const auto [brick, halo, keep_surface] = receive_numbers<Answer>(0, answer);
     if (brick == no_brick) return;
-    const std::string data = to_bytes(make({static_cast<std::size_t>(brick), static_cast<int>(halo)}));
+    const std::string data =
+        to_bytes(make({static_cast<std::size_t>(brick), static_cast<int>(halo), keep_surface != 0}));
     send(Size{brick, static_cast<std::int64_t>(data.size())}, 0, size);
     send_bytes(data, 0, bytes);
   }

@@ -20,7 +20,7 @@ class MpiTeam final : public BrickTeam {
   MpiTeam();
 
   bool is_leader() const override { return rank_ == 0; }
-  void lead(const std::vector<BrickOrder>& orders, const Make& make, const Receive& receive) override;
+  void lead(const std::vector<BrickTask>& tasks, const Make& make, const Receive& receive) override;
   void end() override;
   void help(const Make& make) override;
   void report(int status, const std::string& message) override;
@@ -30,7 +30,7 @@ class MpiTeam final : public BrickTeam {
  private:
   class Service;
   /// Answers a helper that has asked for a brick.
-  void give(int helper, const BrickOrder& order) const;
+  void give(int helper, const BrickTask& task) const;
 
   int rank_ = 0, size_ = 1;
   std::deque<int> waiting_;  ///< helpers that have asked and were not answered yet

@@ -4,19 +4,23 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "common/message_text.h"
 #include "mesher/brick_mesher.h"
 #include "mesher/cut/cut_off_surface.h"
 #include "mesher/field_mesher.h"
 #include "mesher/volume_field.h"
 #include "tetwright/error.h"
 #include "tetwright/prepare_steps.h"
+#include "tetwright/resources.h"
 #include "tools/bricks/brick_bytes.h"
+#include "tools/bricks/brick_estimate.h"
 #include "tools/bricks/brick_part.h"
 #include "tools/bricks/brick_scratch.h"
 #include "tools/bricks/brick_team.h"
@@ -101,12 +105,12 @@ class Bricks {
     report.bricks = count;
   }
 
-  /// Whether a file has a brick with this halo, or a larger one; its border.
-  std::optional<BrickBorder> finished(const BrickOrder& order) {
-    if (!scratch_ || !scratch_->has(order.brick)) return {};
+  /// The border of a brick if a file has what the task asks for.
+  std::optional<BrickBorder> finished(const BrickTask& task) {
+    if (!scratch_ || !scratch_->has(task.brick)) return {};
     try {
-      BrickPart part = brick_part(scratch_->read(order.brick), scratch_->file(order.brick));
-      if (part.border.halo < order.halo) return {};
+      BrickPart part = brick_part(scratch_->read(task.brick), scratch_->file(task.brick));
+      if (part.border.halo < task.halo || part.kept_surface < task.keep_surface) return {};
       ++report_.resumed;
       return std::move(part.border);
     } catch (const InputError&) {
@@ -129,16 +133,21 @@ class Bricks {
     return std::move(part.border);
   }
 
-  /// All parts.
-  std::vector<BrickPart> take() && {
-    if (scratch_)
-      for (std::size_t b = 0; b < parts_.size(); ++b) {
-        const std::string bytes = scratch_->read(b);
-        report_.scratch_bytes += static_cast<double>(bytes.size());
-        parts_[b] = brick_part(bytes, scratch_->file(b));
-      }
-    return std::move(parts_);
+  /// Joins all parts.
+  GatheredMesh joined(const std::map<MaterialTag, std::string>& names) {
+    if (!scratch_) return gather(parts_, names);
+    report_.scratch_bytes = 0;
+    std::vector<BrickPart> parts;
+    for (std::size_t b = 0; b < parts_.size(); ++b) {
+      const std::string bytes = scratch_->read(b);
+      report_.scratch_bytes += static_cast<double>(bytes.size());
+      parts.push_back(brick_part(bytes, scratch_->file(b)));
+    }
+    return gather(parts, names);
   }
+
+  /// Frees the parts in memory.
+  void clear() { parts_ = {}; }
 
  private:
   std::unique_ptr<const BrickScratch> scratch_;
@@ -146,9 +155,36 @@ class Bricks {
   BrickReport& report_;
 };
 
+std::string gigabytes(double bytes) {
+  std::array<char, 32> text;
+  std::snprintf(text.data(), text.size(), "%.2g GB", bytes / gigabyte);
+  return text.data();
+}
+
+/// Checks that memory and scratch space suffice, and says how much of them is expected to be used.
+void check_space(const LabelInput& labels, const MesherOptions& options, double dense_tets, int side,
+                 const BrickScratch* scratch, const PrepareRun& run) {
+  const BrickEstimate needed =
+      estimate_bricks(labels, options, dense_tets, side, *run.options.target.tets, scratch != nullptr);
+  const std::string what = "bricks of " + std::to_string(side) + " cells";
+  require_memory(
+      needed.memory, what,
+      std::string("give smaller --bricks") + (scratch ? "" : ", or a folder for finished ones by --scratch"));
+  run.progress.announce(
+      what + " need about " + gigabytes(needed.memory) + " of memory" +
+      (scratch ? " and " + gigabytes(needed.scratch) + " in " + run.options.bricks.scratch : ""));
+  if (!scratch) return;
+  const double space = scratch->free_bytes() + scratch->used_bytes();
+  if (needed.scratch > space)
+    throw OutputError(run.options.bricks.scratch + ": the bricks would take about " +
+                      gigabytes(needed.scratch) + ", and there is room for " + gigabytes(space) +
+                      "; free some, or give --scratch another folder");
+}
+
 }  // namespace
 
-DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, int side, PrepareRun& run) {
+DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double dense_tets, int side,
+                      PrepareRun& run) {
   DenseMesh made;
   MesherReport& report = made.report;
   BrickReport& bricks = run.report.bricks.emplace();
@@ -158,6 +194,7 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, int side,
   const bool leads = !run.options.bricks.team || run.options.bricks.team->is_leader();
   if (!bricks.scratch.empty() && leads)
     scratch = std::make_unique<BrickScratch>(bricks.scratch, describe(labels, options, side, run));
+  if (leads) check_space(labels, options, dense_tets, side, scratch.get(), run);
   Stages stages(&run.progress);
   stages.begin("signed distances");
   VolumeField volume = make_volume_field(labels, options, report, &run.progress);
@@ -172,9 +209,9 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, int side,
   const double density =
       static_cast<double>(*run.options.target.tets) / meshed_volume(labels, options.keep_outside);
   const CoarsenOptions coarsening = coarsen_options(run.options, run.report.inputs.front());
-  const auto make = [&](const BrickOrder& order) {
-    return make_brick_part(mesher, boxes[order.brick], order.halo, density, coarsening,
-                           run.options.shapes.bound(), &run.progress);
+  const auto make = [&](const BrickTask& task) {
+    return make_brick_part(mesher, boxes[task.brick], task, density, coarsening, run.options.shapes.bound(),
+                           &run.progress);
   };
   BrickTeam* const team = run.options.bricks.team;
   if (team && !team->is_leader()) {
@@ -182,45 +219,54 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, int side,
     throw HelperFinished();
   }
   Bricks all(boxes.size(), std::move(scratch), bricks);
-  std::vector<BrickBorder> borders;
-  bricks.repeated = make_bricks(mesher, boxes, borders, [&](const std::vector<BrickOrder>& orders) {
-    std::vector<BrickOrder> left;
-    for (const BrickOrder& order : orders)
-      if (std::optional<BrickBorder> border = all.finished(order))
-        borders[order.brick] = std::move(*border);
+  std::vector<BrickBorder> borders(boxes.size());
+  const auto make_all = [&](const std::vector<BrickTask>& tasks) {
+    std::vector<BrickTask> left;
+    for (const BrickTask& task : tasks)
+      if (std::optional<BrickBorder> border = all.finished(task))
+        borders[task.brick] = std::move(*border);
       else
-        left.push_back(order);
-    std::size_t done = orders.size() - left.size();
+        left.push_back(task);
+    std::size_t done = tasks.size() - left.size();
     const auto show = [&] {
-      run.progress.update(static_cast<double>(done) / static_cast<double>(orders.size()));
+      run.progress.update(static_cast<double>(done) / static_cast<double>(tasks.size()));
     };
     show();
-    if (team) {
-      team->lead(left, make, [&](std::size_t brick, const std::string& bytes) {
-        borders[brick] = all.keep(brick, bytes);
-        ++done;
-        show();
-      });
-      return;
-    }
-    for (const BrickOrder& order : left) {
-      borders[order.brick] = all.keep(order.brick, make(order));
+    const auto keep = [&](std::size_t brick, const auto& part) {
+      borders[brick] = all.keep(brick, part);
       ++done;
       show();
-    }
+    };
+    if (team)
+      team->lead(left, make, keep);
+    else
+      for (const BrickTask& task : left) keep(task.brick, make(task));
+  };
+  bricks.repeated = make_bricks(mesher, boxes, borders, [&](const std::vector<BrickOrder>& orders) {
+    std::vector<BrickTask> tasks;
+    for (const BrickOrder& order : orders) tasks.push_back({order.brick, order.halo, false});
+    make_all(tasks);
   });
-  if (team) team->end();
-  stages.begin("joining bricks");
-  std::vector<BrickPart> parts = std::move(all).take();
-  for (const BrickPart& part : parts) {
-    report.cells += part.leaves;
-    report.lattice_tets += part.lattice_tets;
-    report.isolated_vertices += part.isolated_vertices;
-  }
   std::map<MaterialTag, std::string> names;
   for (const FieldRegion& region : made.field->regions())
     if (!region.name.empty()) names[region.tag] = region.name;
-  GatheredMesh gathered = gather(std::move(parts), std::move(names));
+  GatheredMesh gathered = all.joined(names);
+  for (std::vector<std::uint8_t> kept(boxes.size(), 0); !gathered.meeting.empty();
+       gathered = all.joined(names)) {
+    std::vector<BrickTask> tasks;
+    for (const std::size_t b : gathered.meeting)
+      if (b < boxes.size() && !std::exchange(kept[b], 1)) tasks.push_back({b, borders[b].halo, true});
+    // Surfaces that were not moved do not meet.
+    TETWRIGHT_CHECK(!tasks.empty());
+    gathered = {};
+    bricks.surfaces_kept += tasks.size();
+    make_all(tasks);
+  }
+  if (team) team->end();
+  all.clear();
+  report.cells = gathered.leaves;
+  report.lattice_tets = gathered.lattice_tets;
+  report.isolated_vertices = gathered.isolated_vertices;
   validate_materials_left(labels, materials_there(*made.field, gathered.dense));
   made.mesh = std::move(gathered.mesh);
   bricks.coarse_tets = made.mesh.tets.size();

@@ -10,6 +10,7 @@
 #include "mesher/mesh_estimate.h"
 #include "tetwright/error.h"
 #include "tetwright/resources.h"
+#include "tools/bricks/brick_estimate.h"
 #include "tools/prepare/edge_sizes_input.h"
 #include "tools/prepare/expected_time.h"
 #include "tools/prepare/gap_opening.h"
@@ -35,11 +36,13 @@ MesherOptions common_options(const PrepareRun& run) {
   return options;
 }
 
+/// Most estimates of memory are within this factor.
+constexpr double estimate_margin = 1.25;
+
 /// Enlarges cells whose size was not requested until the estimated memory is available. Returns the estimate.
 template <class Scan>
 MesherEstimate fit_memory(const Scan& input, MesherOptions& options, PrepareRun& run) {
   constexpr double growth = 1.25;
-  constexpr double estimate_margin = 1.25;      // most estimates are within this factor
   constexpr double min_fitted_resolution = 16;  // a body is not recognisable with fewer cells
   const double available = available_memory() / estimate_margin;
   const MesherEstimate wanted = estimate_mesh(input, options);
@@ -110,31 +113,46 @@ Box3 box_of(const LabelInput& labels) {
   return box;
 }
 
+/// Edge of the bricks in which a volume is meshed; 0: whole.
+int brick_cells(const LabelInput& labels, const MesherOptions& options, const MesherEstimate& whole,
+                const PrepareRun& run) {
+  const BrickOptions& asked = run.options.bricks;
+  if (asked.use == BrickOptions::Use::always) return asked.cells;
+  if (asked.use == BrickOptions::Use::never || conflict_with_bricks(run.options)) return 0;
+  const double available = available_memory() / estimate_margin;
+  if (static_cast<double>(whole.bytes) <= available) return 0;
+  const auto dense = static_cast<double>(whole.tets);
+  const std::size_t target = *run.options.target.tets;
+  const bool scratch = !asked.scratch.empty();
+  const int side = largest_bricks(labels, options, dense, target, scratch, available);
+  return estimate_bricks(labels, options, dense, side, target, scratch).memory <= available ? side : 0;
+}
+
 DenseMesh mesh_input(LabelInput& labels, PrepareRun& run) {
   const CellOptions& cells = run.options.cells;
   const TargetOptions& target = run.options.target;
   MesherOptions options = common_options(run);
-  std::optional<MesherEstimate> estimate;
-  if (!cells.resolution && !cells.size) {
+  const bool choose = !cells.resolution && !cells.size;
+  if (choose)
     options.voxel_size = run.task == Task::prepare && target.tets
                              ? cell_size_for_target(labels, *target.tets, options)
                              : default_cell_size(labels);
-    estimate = fit_memory(labels, options, run);
-  }
-  if (run.task == Task::prepare) {
-    if (!estimate) estimate = estimate_mesh(labels, options);
+  std::optional<MesherEstimate> estimate;
+  if (run.task == Task::prepare) estimate = estimate_mesh(labels, options);
+  const int side = estimate ? brick_cells(labels, options, *estimate, run) : 0;
+  if (choose && side == 0) estimate = fit_memory(labels, options, run);
+  if (run.task == Task::prepare)
     run.progress.announce(
         expected_time_line({static_cast<double>(estimate->tets), static_cast<double>(target.tets.value_or(0)),
                             static_cast<double>(labels.voxel_count())},
                            std::min(thread_count(), std::max(1u, std::thread::hardware_concurrency()))));
-  }
   read_sizes(run, box_of(labels));
   if (target.tolerance && run.task == Task::mesh)
     throw UsageError(
         "--tolerance of 'mesh' is for surfaces; for a volume use 'prepare --tolerance', which bounds the "
         "distance from the dense mesh");
-  if (run.options.bricks.use == BrickOptions::Use::always)
-    return mesh_bricks(std::move(labels), options, run.options.bricks.cells, run);
+  if (side > 0)
+    return mesh_bricks(std::move(labels), options, static_cast<double>(estimate->tets), side, run);
   DenseMesh dense = mesh_labels(labels, options, &run.progress);
   if (target.tolerance) run.report.tolerance = tolerance_of(*target.tolerance, diagonal_of(dense.mesh));
   return dense;

@@ -158,17 +158,8 @@ Prepared improve_mesh(Input mesh, const PrepareOptions& options, Progress* progr
 
 namespace {
 
-/// Options that bricks cannot serve.
 void check_bricks(const PrepareOptions& options) {
-  const SizeOptions& sizes = options.sizes;
-  const char* const other = options.cells.uniform                      ? "--uniform"
-                            : options.target.tolerance                 ? "--tolerance"
-                            : sizes.field                              ? "--size-field"
-                            : sizes.min_edge                           ? "--min-edge"
-                            : sizes.max_edge                           ? "--max-edge"
-                            : options.schedule.kind == Schedule::paper ? "--schedule paper"
-                                                                       : nullptr;
-  if (other)
+  if (const char* const other = conflict_with_bricks(options))
     throw UsageError(std::string("--bricks does not work with ") + other + "; leave out one of them");
   const int cells = options.bricks.cells;
   if (cells < min_brick_cells || cells > max_brick_cells ||
@@ -178,6 +169,17 @@ void check_bricks(const PrepareOptions& options) {
 }
 
 }  // namespace
+
+const char* conflict_with_bricks(const PrepareOptions& options) {
+  const SizeOptions& sizes = options.sizes;
+  if (options.cells.uniform) return "--uniform";
+  if (options.target.tolerance) return "--tolerance";
+  if (sizes.field) return "--size-field";
+  if (sizes.min_edge) return "--min-edge";
+  if (sizes.max_edge) return "--max-edge";
+  if (options.schedule.kind == Schedule::paper) return "--schedule paper";
+  return nullptr;
+}
 
 void check_options(Task task, const PrepareOptions& options) {
   const SizeOptions& sizes = options.sizes;

@@ -382,6 +382,7 @@ nlohmann::json bricks_json(const BrickReport& bricks) {
   return {{"cells", bricks.cells},
           {"count", bricks.bricks},
           {"repeated", bricks.repeated},
+          {"surfaces_kept", bricks.surfaces_kept},
           {"resumed", bricks.resumed},
           {"coarse_tets", bricks.coarse_tets},
           {"scratch_bytes", static_cast<std::uint64_t>(bricks.scratch_bytes)}};

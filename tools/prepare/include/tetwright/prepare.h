@@ -338,9 +338,11 @@ struct CoarserCells {
 
 /// How a segmented volume was meshed in bricks.
 struct BrickReport {
-  int cells = 0;                ///< edge of a brick, finest cells before any are halved
-  std::size_t bricks = 0;       ///< number of bricks
-  std::size_t repeated = 0;     ///< times that a brick was made again with more cells around it
+  int cells = 0;             ///< edge of a brick, finest cells before any are halved
+  std::size_t bricks = 0;    ///< number of bricks
+  std::size_t repeated = 0;  ///< times that a brick was made again with more cells around it
+  /// Bricks made again without coarsening their boundary, since it met that of another one.
+  std::size_t surfaces_kept = 0;
   std::size_t resumed = 0;      ///< bricks that were finished before
   std::size_t coarse_tets = 0;  ///< tets of all coarsened bricks
   double scratch_bytes = 0;     ///< of all bricks' files

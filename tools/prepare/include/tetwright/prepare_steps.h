@@ -116,10 +116,16 @@ DenseMesh make_dense_mesh(ScanInput input, PrepareRun& run);
 /// mesh.
 ///
 /// \param options the cells
+/// \param dense_tets estimate for the dense mesh
 /// \param side edge of a brick, finest cells before any are halved
 /// \return the coarsened mesh
-/// \throws Error in the cases of mesh_labels()
-DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, int side, PrepareRun& run);
+/// \throws Error in the cases of mesh_labels(); OutputError if memory or scratch space would not suffice
+/// \throws HelperFinished in a member of BrickOptions::team that does not lead
+DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double dense_tets, int side,
+                      PrepareRun& run);
+
+/// The first option that bricks cannot serve, such as "--uniform"; null if there is none.
+const char* conflict_with_bricks(const PrepareOptions& options);
 
 /// Diagonal of a mesh's bounding box, input units.
 double diagonal_of(const TetMesh& mesh);
