@@ -254,6 +254,10 @@ class ThinLabelFinder {
               for (int y = from[1]; y < to[1]; ++y)
                 for (int x = from[0]; x < to[0]; ++x) out.push_back(morton_encode(x, y, z));
           }
+          // Adjacent voxels give the same cells, which would take many times the memory together.
+          std::sort(out.begin(), out.end());
+          out.erase(std::unique(out.begin(), out.end()), out.end());
+          out.shrink_to_fit();
         });
     parallel_sort_unique(cells);
     return cells;

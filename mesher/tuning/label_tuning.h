@@ -10,7 +10,7 @@ namespace tetwright {
 struct LabelGrains {
   static constexpr std::size_t tiles = 2;              ///< several milliseconds each where labels meet
   static constexpr std::size_t voxels = 1 << 18;       ///< mostly skipped
-  static constexpr std::size_t thin_voxels = 1 << 12;  ///< with the cells around each
+  static constexpr std::size_t thin_voxels = 1 << 16;  ///< with the cells around each, most of them the same
 };
 
 /// Smooth distances of labels between voxel centres; mesher/README.md, Tuned numbers, explains the terms. The

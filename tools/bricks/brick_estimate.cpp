@@ -14,15 +14,14 @@ namespace tetwright {
 
 namespace {
 
-/// Bytes, measured on foams of 128^3 and 256^3 voxels.
+/// Bytes, fitted to foams of 128^3 and 256^3 voxels in 8 and 64 bricks.
 struct PerItem {
-  static constexpr double program = 38e6;
-  /// A tet while it is simplified or coarsened.
-  static constexpr double tet = 110;
-  /// A lattice tet while points are moved.
-  static constexpr double lattice_tet = 33;
-  /// A face of the dense surface: with its brick, with its samples and trees in the simplifier, and in a
-  /// file.
+  static constexpr double program = 60e6;
+  /// A tet of a brick while it is coarsened, and a coarse one while it is simplified.
+  static constexpr double tet = 110, coarse_tet = 140;
+  /// A lattice tet while points are moved. What is freed afterwards is only partly used for the tets.
+  static constexpr double lattice_tet = 50;
+  /// A face of the dense surface: with its brick, with its samples and trees in the simplifier, and in a file.
   static constexpr double kept_face = 60, face = 150, filed_face = 20;
   /// A coarse tet with its brick, and in a file.
   static constexpr double kept_tet = 30, filed_tet = 10;
@@ -30,7 +29,7 @@ struct PerItem {
 
 /// Faces of the dense surface, and of a cut through it: for each dense tet, and for each squared cell and
 /// density^(2/3).
-constexpr double faces_per_tet = 0.12, cut_faces_per_area = 0.6;
+constexpr double faces_per_tet = 0.1, cut_faces_per_area = 0.6;
 /// Tets after coarsening for each final one, and for each face of a cut and side (coarsen()).
 constexpr double coarse_per_final = 8, coarse_per_cut_face = 2;
 
@@ -58,11 +57,11 @@ BrickEstimate estimate_bricks(const LabelInput& labels, const MesherOptions& opt
   const double grown = std::min(dense, largest * std::pow(1 + 2.0 * CellTuning::Bricks::halo / side, 3));
   const double field = PerItem::program + label_memory(labels).beside;
   const double kept = PerItem::kept_tet * coarse + PerItem::kept_face * faces;
-  const double making = std::max(PerItem::lattice_tet * grown, PerItem::tet * largest);
+  const double making = PerItem::lattice_tet * grown + PerItem::tet * largest;
   BrickEstimate estimate;
   estimate.memory =
       std::max({PerItem::program + label_memory(labels).before, field + (scratch ? 0 : kept) + making,
-                field + PerItem::tet * coarse + PerItem::face * faces});
+                field + PerItem::coarse_tet * coarse + PerItem::face * faces});
   estimate.scratch = PerItem::filed_tet * coarse + PerItem::filed_face * faces;
   return estimate;
 }

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 constexpr const char* job_file = "tetwright-job.json";
 constexpr const char* brick_prefix = "brick-";
 constexpr const char* brick_suffix = ".tetwright";
-/// Of the temporary files of OutputFiles.
+/// Begin and end the names of temporary files of OutputFiles.
 constexpr const char *temporary_prefix = ".tetwright-", *temporary_suffix = ".tmp";
 
 bool is_brick(const std::string& name) {

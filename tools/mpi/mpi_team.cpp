@@ -102,7 +102,7 @@ void wait_for(int from, int tag) {
 
 }  // namespace
 
-/// What the leader's thread does while bricks are made.
+/// Answers helpers while bricks are made.
 class MpiTeam::Service {
  public:
   Service(MpiTeam& team, std::deque<BrickTask> tasks, const Receive& receive)

@@ -71,7 +71,7 @@ struct PrepareRun {
   PrepareReport& report;
   std::optional<MidsideNodes> midside;   ///< midside nodes of the result, with order 2
   std::shared_ptr<const CapFaces> caps;  ///< of the surfaces; null without holes
-  /// What the coarsened mesh of a volume in bricks no longer shows of the dense one.
+  /// The dense mesh of a volume in bricks, as far as its coarsened mesh no longer shows it.
   std::optional<OriginalMesh> original;
 };
 
