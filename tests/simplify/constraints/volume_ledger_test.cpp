@@ -40,6 +40,35 @@ TEST(VolumeLedger, CommitsWithinItsBoundsAndBackTowardsThem) {
   EXPECT_TRUE(open.allows(Changes{{0, 1e9}}));
 }
 
+// A coarsened mesh keeps the volumes that it had before.
+TEST(VolumeLedger, KeepsInitialVolumesThatAreNotTheCurrentOnes) {
+  TetMesh input =
+      grid_mesh({4, 4, 4}, [](int x, int, int) { return std::optional<MaterialTag>(x < 2 ? 1 : 2); });
+  for (Vec3& p : input.points) p = Vec3(5, 6, 7) + 3 * p;
+  const EditableMesh mesh(std::move(input), "mesh");
+  const double volume = 27 * 32;                                    // of each material, input units cubed
+  const double half = mesh.total_volume() / 2;                      // the same in working coordinates
+  const std::map<MaterialTag, double> initial{{1, 1.04 * volume}};  // 2 has its current one
+  VolumeLedger ledger;
+  ledger.open(mesh, 0.1, &initial);
+  EXPECT_NEAR(ledger.utilization(0), 0.4 / 1.04, 1e-12);
+  EXPECT_NEAR(ledger.utilization(1), 0, 1e-12);
+  // From 4 % below, 6 % may be lost and 14 % gained; without initial volumes 10 %.
+  EXPECT_FALSE(ledger.allows(Changes{{0, -0.07 * half}}));
+  EXPECT_TRUE(ledger.allows(Changes{{0, -0.06 * half}}));
+  EXPECT_TRUE(ledger.allows(Changes{{0, 0.13 * half}}));
+  EXPECT_TRUE(ledger.allows(Changes{{1, 0.09 * half}}));
+  EXPECT_FALSE(ledger.allows(Changes{{1, 0.11 * half}}));
+  // Outside the bounds a volume may only return.
+  const std::map<MaterialTag, double> larger{{1, 1.5 * volume}, {2, 0.5 * volume}, {9, 1}};
+  ledger.open(mesh, 0.1, &larger);
+  EXPECT_GT(ledger.utilization(0), 1);
+  EXPECT_GT(ledger.utilization(1), 1);
+  EXPECT_TRUE(ledger.allows(Changes{{0, 0.01 * half}, {1, -0.01 * half}}));
+  EXPECT_FALSE(ledger.allows(Changes{{0, -0.01 * half}}));
+  EXPECT_FALSE(ledger.allows(Changes{{1, 0.01 * half}}));
+}
+
 // A protruding corner may be removed while the volume bound permits, but not afterwards. An operation refused
 // because of the count commits nothing.
 TEST(VolumeLedger, HoldsCollapsesBack) {

@@ -1,0 +1,407 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Tests --bricks and --scratch through the program.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
+#include <thread>
+
+#include "common/samples/samples.h"
+#include "tests/tools/process.h"
+#include "tests/tools/program.h"
+#include "tetwright/io.h"
+
+namespace tetwright::bricks_test {
+namespace {
+
+using Labels = std::function<MaterialTag(int, int, int)>;
+
+LabelVolume make_volume(const std::array<int, 3>& size, const Labels& label) {
+  LabelVolume volume;
+  volume.size = size;
+  for (int z = 0; z < size[2]; ++z)
+    for (int y = 0; y < size[1]; ++y)
+      for (int x = 0; x < size[0]; ++x) volume.labels.push_back(label(x, y, z));
+  return volume;
+}
+
+/// A long volume of three bricks, of which the second one has the most labels.
+LabelVolume long_volume() {
+  return make_volume({72, 6, 6},
+                     [](int x, int y, int z) { return x < 40 || x >= 56 ? 1 : 2 + y / 3 + 2 * (z / 3); });
+}
+
+/// The part of a sample between these voxels.
+LabelVolume slab(const std::string& sample, const std::array<int, 3>& low, const std::array<int, 3>& high) {
+  const auto volume = std::get<LabelVolume>(make_sample(sample));
+  LabelVolume part = volume;
+  part.labels.clear();
+  for (std::size_t a = 0; a < 3; ++a) part.size[a] = high[a] - low[a];
+  for (int z = low[2]; z < high[2]; ++z)
+    for (int y = low[1]; y < high[1]; ++y)
+      for (int x = low[0]; x < high[0]; ++x)
+        part.labels.push_back(
+            volume.labels[static_cast<std::size_t>(x + volume.size[0] * (y + volume.size[1] * z))]);
+  return part;
+}
+
+nlohmann::json read_json(const std::string& file) { return nlohmann::json::parse(contents(file)); }
+
+/// The keys whose values differ, numbers by more than rounding.
+std::vector<std::string> differences(const nlohmann::json& a, const nlohmann::json& b,
+                                     const std::string& name = "") {
+  std::vector<std::string> all;
+  if (a.is_number_float() && b.is_number_float()) {
+    const double x = a, y = b;
+    if (std::fabs(x - y) > 1e-9 * std::max(std::fabs(x), std::fabs(y))) all.push_back(name);
+  } else if (a.is_structured() && a.type() == b.type() && a.size() == b.size()) {
+    for (auto i = a.begin(), j = b.begin(); i != a.end(); ++i, ++j) {
+      const auto more = differences(*i, *j, a.is_object() ? name + "/" + i.key() : name);
+      all.insert(all.end(), more.begin(), more.end());
+      if (a.is_object() && i.key() != j.key()) all.push_back(name + "/" + i.key());
+    }
+  } else if (a != b) {
+    all.push_back(name);
+  }
+  return all;
+}
+
+constexpr std::size_t brick_count = 3;
+
+/// Calls for a volume of three bricks.
+class Bricks : public testing::Test {
+ protected:
+  Bricks() { write_label_volume(long_volume(), path("long.nrrd")); }
+
+  std::string path(const std::string& name) const { return folder_ / name; }
+  /// Path of a file of the scratch folder.
+  std::string scratch(const std::string& name) const { return path("scratch/" + name); }
+  std::string brick(std::size_t b) const { return scratch("brick-" + std::to_string(b) + ".tetwright"); }
+
+  /// Words of the call that makes the mesh of the long volume.
+  std::vector<std::string> words(const std::string& mesh) const {
+    return {"prepare", path("long.nrrd"), "--target-tets", "1000", "--voxel-size", "1", "--bricks",
+            "32",      "--stats",         path("s.json"),  "-o",   path(mesh)};
+  }
+  std::vector<std::string> words_with_scratch(const std::string& mesh) const {
+    std::vector<std::string> all = words(mesh);
+    for (const std::string& word :
+         {std::string("--scratch"), path("scratch"), std::string("--threads"), std::string("1")})
+      all.push_back(word);
+    return all;
+  }
+  static std::string line(const std::vector<std::string>& words) {
+    std::string all;
+    for (const std::string& word : words) all += (all.empty() ? "" : " ") + word;
+    return all;
+  }
+  /// Statistics of the bricks of the last run.
+  nlohmann::json bricks() const { return read_json(path("s.json")).at("dense").at("bricks"); }
+
+  /// Makes the mesh in memory.
+  std::string expected() const {
+    const Answer a = run(line(words("expected.vtu")) + " --threads 1");
+    EXPECT_EQ(a.status, 0) << a.err;
+    return contents(path("expected.vtu"));
+  }
+  /// Runs the job until `enough` says so and kills it then.
+  /// \return whether it was killed before it ended
+  bool kill_when(const std::function<bool()>& enough) const {
+    Process process(words_with_scratch("killed.vtu"), path("err"));
+    while (!enough() && !process.ended()) wait_a_moment();
+    process.send(SIGKILL);
+    return process.wait() == 1000 + SIGKILL;
+  }
+  /// Runs the job until a brick is finished and kills it then. On a busy machine it may end before, without
+  /// leaving anything, and is run again.
+  void kill_after(std::size_t last) const {
+    for (int attempt = 0; attempt < 20; ++attempt) {
+      if (kill_when([&] { return std::filesystem::exists(brick(last)); }) &&
+          std::filesystem::exists(brick(last)))
+        return;
+      std::filesystem::remove(path("killed.vtu"));
+    }
+    FAIL() << "never killed in time: " << contents(path("err"));
+  }
+  /// Expects a run with the scratch folder to give the mesh and to remove the folder.
+  /// \return the number of bricks that were finished before
+  std::size_t expect_resumed(const std::string& mesh) const {
+    const Answer a = run(line(words_with_scratch("resumed.vtu")));
+    EXPECT_EQ(a.status, 0) << a.err;
+    EXPECT_TRUE(contents(path("resumed.vtu")) == mesh);
+    EXPECT_FALSE(std::filesystem::exists(path("scratch")));
+    return a.status == 0 ? bricks().at("resumed").get<std::size_t>() : 0;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Bricks, GiveTheSameBytesByAnyMeans) {
+  const std::string mesh = expected();
+  EXPECT_EQ(bricks().at("cells"), 32);
+  EXPECT_EQ(bricks().at("count"), brick_count);
+  EXPECT_EQ(bricks().at("resumed"), 0);
+  EXPECT_EQ(bricks().at("scratch_bytes"), 0);
+  const Answer three = run(line(words("three.vtu")) + " --threads 3");
+  EXPECT_EQ(three.status, 0) << three.err;
+  EXPECT_NE(three.out.find("3 bricks of 32 cells (--bricks 32): "), std::string::npos) << three.out;
+  EXPECT_TRUE(contents(path("three.vtu")) == mesh);
+  EXPECT_EQ(expect_resumed(mesh), 0u);
+  EXPECT_GT(bricks().at("scratch_bytes"), 1000);
+  const Answer check = run("check " + path("expected.vtu") + " --quiet");
+  EXPECT_EQ(check.status, 0) << check.out;
+}
+
+TEST_F(Bricks, AKilledRunGoesOn) {
+  const std::string mesh = expected();
+  for (std::size_t b = 0; b < brick_count; ++b) {
+    kill_after(b);
+    ASSERT_TRUE(std::filesystem::exists(scratch("tetwright-job.json")));
+    EXPECT_FALSE(std::filesystem::exists(path("killed.vtu")));
+  }
+  EXPECT_EQ(expect_resumed(mesh), brick_count);
+}
+
+TEST_F(Bricks, ARunKilledAtAnyMomentGoesOn) {
+  const auto begin = std::chrono::steady_clock::now();
+  const std::string mesh = expected();
+  const auto life = std::chrono::steady_clock::now() - begin;
+  for (int i = 1; i < 4; ++i) {
+    const auto start = std::chrono::steady_clock::now();
+    // The folder remains, so each run begins where the one before ended.
+    kill_when([&] { return std::chrono::steady_clock::now() - start > life * i / 8; });
+  }
+  expect_resumed(mesh);
+}
+
+TEST_F(Bricks, DamagedAndLostBricksAreMadeAgain) {
+  const std::string mesh = expected();
+  ASSERT_NO_FATAL_FAILURE(kill_after(brick_count - 1));
+  ASSERT_TRUE(std::filesystem::exists(brick(0)));
+  const std::string whole = contents(brick(1)), other = contents(brick(0));
+  std::string flipped = whole;
+  flipped[flipped.size() / 2] ^= 1;
+  // All bricks of a run are damaged in different ways.
+  put(brick(0), other.substr(0, other.size() / 2));
+  put(brick(1), flipped);
+  std::filesystem::remove(brick(2));
+  put(scratch(".tetwright-0-0.tmp"), "half a brick");
+  EXPECT_EQ(expect_resumed(mesh), 0u);
+  ASSERT_NO_FATAL_FAILURE(kill_after(1));
+  put(brick(1), "");
+  std::filesystem::remove(brick(2));  // may have been finished, too
+  EXPECT_EQ(expect_resumed(mesh), 1u);
+}
+
+TEST_F(Bricks, ForeignFilesOfTheFolderStay) {
+  std::filesystem::create_directory(path("scratch"));
+  put(scratch("notes.txt"), "precious");
+  const Answer a = run(line(words_with_scratch("a.vtu")));
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_EQ(contents(scratch("notes.txt")), "precious");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("scratch")), {}), 1);
+}
+
+TEST_F(Bricks, TheFolderOfAnotherJobIsRefused) {
+  ASSERT_NO_FATAL_FAILURE(kill_after(0));
+  const std::string finished = contents(brick(0));
+  const std::string call = line(words_with_scratch("a.vtu")) + " --quiet";
+  write_label_volume(make_volume({72, 6, 6}, [](int x, int, int) { return x < 41 ? 1 : 2; }),
+                     path("other.nrrd"));
+  const auto replaced = [&](const std::string& before, const std::string& after) {
+    std::string other = call;
+    return other.replace(other.find(before), before.size(), after);
+  };
+  expect_refused(replaced("--target-tets 1000", "--target-tets 1001"), 2,
+                 {"scratch", "another job", "--target-tets", "1001"});
+  expect_refused(replaced("long.nrrd", "other.nrrd"), 2, {"scratch", "another job"});
+  expect_refused(call + " --seed 2", 2, {"scratch", "another job", "--seed"});
+  expect_refused(replaced("--bricks 32", "--bricks 64"), 2, {"scratch", "another job", "--bricks"});
+  expect_refused(call + " --min-voxels 200", 2, {"scratch", "another job"});  // merges labels
+  put(scratch("tetwright-job.json"), "{");
+  expect_refused(call, 2, {"tetwright-job.json", "no description of a job"});
+  EXPECT_EQ(contents(brick(0)), finished);
+  EXPECT_FALSE(std::filesystem::exists(path("a.vtu")));
+}
+
+TEST_F(Bricks, AFolderInUseIsRefused) {
+  bool stopped = false;
+  // On a busy machine the program may end before it is stopped.
+  for (int attempt = 0; attempt < 20 && !stopped; ++attempt) {
+    Process process(words_with_scratch("a.vtu"), path("err"));
+    while (!std::filesystem::exists(scratch("tetwright-job.json")) && !process.ended()) wait_a_moment();
+    stopped = process.stop();
+    if (!stopped) continue;
+    expect_refused(line(words_with_scratch("b.vtu")) + " --quiet", 2, {"scratch", "another process"});
+    process.send(SIGCONT);
+    EXPECT_EQ(process.wait(), 0) << contents(path("err"));
+    EXPECT_FALSE(std::filesystem::exists(path("scratch")));
+  }
+  EXPECT_TRUE(stopped);
+}
+
+TEST_F(Bricks, AFullDiskIsStatusFiveAndFinishedBricksStay) {
+  const std::string mesh = expected();
+  ASSERT_NO_FATAL_FAILURE(kill_after(brick_count - 1));
+  const auto size = [&](std::size_t b) { return std::filesystem::file_size(brick(b)); };
+  ASSERT_GT(size(1), size(0) + 4000);  // the second brick has more labels
+  // A limit on the size of files acts like a full disk. The shell's unit is 512 bytes.
+  const std::string blocks = std::to_string((size(0) + size(1)) / 2 / 512);
+  std::filesystem::remove_all(path("scratch"));
+  const std::string call = line(words_with_scratch("a.vtu")) + " --quiet";
+  expect_refused(call, 5, {"brick-1.tetwright"}, "ulimit -f " + blocks + ";");
+  EXPECT_TRUE(std::filesystem::exists(brick(0)));
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("scratch")), {}), 2);
+  EXPECT_EQ(expect_resumed(mesh), 1u);
+}
+
+TEST_F(Bricks, WrongCallsAreStatusTwo) {
+  const std::string call = "prepare " + path("long.nrrd") + " --target-tets 900 -o " + path("a.vtu");
+  const std::string with = call + " --bricks 32 ";
+  for (const std::string other :
+       {"--uniform", "--tolerance 1", "--min-edge 1", "--max-edge 5", "--schedule paper"}) {
+    const std::string option = other.substr(0, other.find(' '));
+    expect_refused(with + other, 2, {"--bricks does not work with " + option});
+  }
+  put(path("sizes.txt"), "0 0 0 1\n");
+  expect_refused(with + "--size-field " + path("sizes.txt"), 2, {"--bricks does not work with --size-field"});
+  for (const std::string cells :
+       {"33", "16", "2048", "0", "abc", "32.5", "''", "1e2", "99999999999999999999"})
+    expect_refused(call + " --bricks " + cells, 2,
+                   {"--bricks", "auto, off or a power of two from 32 to 1024"});
+  expect_refused(call + " --bricks=-5", 2, {"--bricks", "'-5'"});
+  expect_refused(call + " --bricks off --scratch " + path("scratch"), 2, {"--scratch", "--bricks off"});
+  put(path("body.off"), tetrahedron_off);
+  const std::string surface = "prepare " + path("body.off") + " --target-tets 100 -o " + path("a.vtu");
+  expect_refused(surface + " --bricks 32", 2, {"--bricks", "segmented volumes"});
+  expect_refused(surface + " --scratch " + path("scratch"), 2, {"--scratch", "segmented volumes"});
+  expect_refused("mesh " + path("long.nrrd") + " --bricks 32 -o " + path("a.vtu"), 2, {"--bricks"});
+  put(path("file"), "precious");
+  for (const std::string wrong : {"file", "file/below"})
+    expect_refused(with + "--quiet --scratch " + path(wrong), 5, {"file", "folder", "--scratch"});
+  EXPECT_EQ(contents(path("file")), "precious");
+  EXPECT_FALSE(std::filesystem::exists(path("a.vtu")));
+  EXPECT_FALSE(std::filesystem::exists(path("scratch")));
+}
+
+/// Makes the mesh of a volume whole and in bricks of 32 cells, which must have equal statistics, the same
+/// status and a valid result.
+/// \return the answers of check --json to both results
+std::array<nlohmann::json, 2> compare_with_whole(const TemporaryFolder& folder, const std::string& call) {
+  std::array<nlohmann::json, 2> stats, checks;
+  std::array<int, 2> status{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const std::string out = folder / (i == 0 ? "whole.vtu" : "bricks.vtu");
+    const Answer a = run(call + (i == 0 ? " --bricks off" : " --bricks 32") + " --threads 1 -o " + out +
+                         " --stats " + (folder / "s.json"));
+    EXPECT_TRUE(a.status == 0 || a.status == 1) << a.err;
+    status[i] = a.status;
+    stats[i] = read_json(folder / "s.json");
+    const Answer check = run("check --json --quiet " + out);
+    EXPECT_EQ(check.status, 0) << check.out;
+    checks[i] = nlohmann::json::parse(check.out);
+    EXPECT_EQ(checks[i].at("mesh").at("materials").size(), stats[0].at("dense").at("materials").size());
+  }
+  EXPECT_EQ(status[0], status[1]);
+  EXPECT_EQ(stats[0].at("shortfall"), stats[1].at("shortfall"));
+  EXPECT_GT(stats[1].at("dense").at("bricks").at("count"), 1);
+  stats[1]["dense"].erase("bricks");
+  for (nlohmann::json& s : stats) s["dense"].erase("histogram");  // relative to each brick's mean volume
+  for (const std::string& name : differences(stats[0].at("dense"), stats[1].at("dense")))
+    ADD_FAILURE() << name << ": " << stats[0]["dense"][nlohmann::json::json_pointer(name)] << " and "
+                  << stats[1]["dense"][nlohmann::json::json_pointer(name)];
+  return checks;
+}
+
+TEST(BricksOfSamples, FoamHasTheDenseMeshOfTheWhole) {
+  const TemporaryFolder f;
+  write_label_volume(slab("foam", {0, 20, 20}, {48, 32, 28}), f / "foam.nrrd");
+  const auto checks =
+      compare_with_whole(f, "prepare " + (f / "foam.nrrd") + " --target-tets 2000 --voxel-size 1");
+  EXPECT_EQ(checks[0].at("topology"), checks[1].at("topology"));
+}
+
+TEST(BricksOfSamples, OrgansHaveTheDenseMeshOfTheWhole) {
+  const TemporaryFolder f;
+  write_label_volume(slab("organs", {0, 18, 20}, {48, 28, 27}), f / "organs.nrrd");
+  const auto checks =
+      compare_with_whole(f, "prepare " + (f / "organs.nrrd") + " --target-tets 2500 --voxel-size 1.05");
+  EXPECT_EQ(checks[0].at("topology"), checks[1].at("topology"));
+}
+
+/// Number of face-connected components of each label but 0.
+std::map<MaterialTag, int> components(const LabelVolume& volume) {
+  const int nx = volume.size[0], ny = volume.size[1], nz = volume.size[2];
+  std::vector<std::uint8_t> seen(volume.labels.size(), 0);
+  const auto index = [&](int x, int y, int z) {
+    return static_cast<std::size_t>(x) +
+           static_cast<std::size_t>(nx) *
+               (static_cast<std::size_t>(y) + static_cast<std::size_t>(ny) * static_cast<std::size_t>(z));
+  };
+  std::map<MaterialTag, int> count;
+  for (int z = 0; z < nz; ++z)
+    for (int y = 0; y < ny; ++y)
+      for (int x = 0; x < nx; ++x) {
+        const MaterialTag label = volume.labels[index(x, y, z)];
+        if (label == 0 || seen[index(x, y, z)]) continue;
+        ++count[label];
+        seen[index(x, y, z)] = 1;
+        std::vector<std::array<int, 3>> open{{x, y, z}};
+        while (!open.empty()) {
+          const std::array<int, 3> at = open.back();
+          open.pop_back();
+          for (std::size_t a = 0; a < 3; ++a)
+            for (const int step : {-1, 1}) {
+              std::array<int, 3> next = at;
+              next[a] += step;
+              if (next[a] < 0 || next[a] >= volume.size[a]) continue;
+              const std::size_t i = index(next[0], next[1], next[2]);
+              if (seen[i] || volume.labels[i] != label) continue;
+              seen[i] = 1;
+              open.push_back(next);
+            }
+        }
+      }
+  return count;
+}
+
+/// Expects the mesh in bricks to have the components of the voxels' labels.
+void expect_components(const LabelVolume& volume) {
+  const TemporaryFolder f;
+  write_label_volume(volume, f / "v.nrrd");
+  const auto checks = compare_with_whole(
+      f, "prepare " + (f / "v.nrrd") + " --target-tets 2000 --voxel-size 1 --min-voxels 1");
+  std::map<MaterialTag, int> found;
+  for (const nlohmann::json& material : checks[1].at("topology").at("materials"))
+    found[material.at("tag")] = material.at("components");
+  EXPECT_EQ(found, components(volume));
+}
+
+// Gaps and slabs one voxel thick, one after another, so that the cut runs along one of them wherever it is.
+TEST(ThinLabels, KeepTheirComponentsAlongTheCut) {
+  expect_components(make_volume({44, 8, 8}, [](int x, int, int) {
+    if (x < 26) return 1;
+    if (x >= 39) return 3;
+    return x % 2 == 0 ? 0 : 2;
+  }));
+}
+
+// Slabs and gaps one voxel thick.
+TEST(ThinLabels, KeepTheirComponentsAcrossTheCut) {
+  expect_components(make_volume({44, 10, 6}, [](int, int y, int) {
+    constexpr std::array<MaterialTag, 10> rows{1, 1, 0, 1, 1, 2, 3, 3, 0, 4};
+    return rows[static_cast<std::size_t>(y)];
+  }));
+}
+
+}  // namespace
+}  // namespace tetwright::bricks_test
