@@ -48,7 +48,7 @@ void join(BrickTeam& team, CommandLine& line) {
 }  // namespace
 
 int run_program(int argc, char** argv, BrickTeam* team) {
-  // What ends a helper ends the leader, too, which tells the user.
+  // A signal that ends a helper ends the leader, too, which tells the user.
   if (!team || team->is_leader()) handle_interruptions();
 #ifdef __GLIBC__
   // Return large blocks to the system when they are freed. By default glibc raises the threshold to the size

@@ -115,6 +115,27 @@ void archive(Archive& members, Part& part, Statistics& dense) {
           dense.max_dihedral, dense.histogram, dense.dihedrals);
 }
 
+/// Block by block: a damaged size in the frame must not ask for memory.
+std::string decompressed(std::string_view bytes, const std::string& name) {
+  const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), ZSTD_freeDCtx);
+  if (!context) throw OutputError("not enough memory to read a brick");
+  std::string all, block(ZSTD_DStreamOutSize(), '\0');
+  ZSTD_inBuffer in{bytes.data(), bytes.size(), 0};
+  std::size_t left = 1;  // 0 at the end of the frame
+  while (left != 0) {
+    ZSTD_outBuffer out{block.data(), block.size(), 0};
+    const std::size_t before = in.pos;
+    left = ZSTD_decompressStream(context.get(), &out, &in);
+    if (ZSTD_isError(left))
+      throw InputError(name, 0, std::string("the brick is damaged: ") + ZSTD_getErrorName(left));
+    all.append(block.data(), out.pos);
+    if (left != 0 && in.pos == before && out.pos == 0)
+      throw InputError(name, 0, "the brick's data is incomplete");
+  }
+  if (in.pos != in.size) throw InputError(name, 0, "the brick has more data than it should");
+  return all;
+}
+
 }  // namespace
 
 std::string to_bytes(const BrickPart& part) {
@@ -134,19 +155,11 @@ std::string to_bytes(const BrickPart& part) {
 }
 
 BrickPart brick_part(std::string_view bytes, const std::string& name) {
-  const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
-  // A compressed byte stands for a bounded number of others, so a damaged size cannot ask for more memory.
-  constexpr unsigned long long max_ratio = 1 << 16;
-  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size / max_ratio > bytes.size())
-    throw InputError(name, 0, "this is no brick");
-  std::string all(size, '\0');
-  const std::size_t made = ZSTD_decompress(all.data(), all.size(), bytes.data(), bytes.size());
-  if (ZSTD_isError(made))
-    throw InputError(name, 0, std::string("the brick is damaged: ") + ZSTD_getErrorName(made));
+  const std::string all = decompressed(bytes, name);
   BrickPart part;
   ByteReader reader(all, name);
   archive(reader, part, part.dense);
-  if (made != size || !reader.at_end()) throw InputError(name, 0, "the brick has more data than it should");
+  if (!reader.at_end()) throw InputError(name, 0, "the brick has more data than it should");
   return part;
 }
 

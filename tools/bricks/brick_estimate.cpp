@@ -21,7 +21,8 @@ struct PerItem {
   static constexpr double tet = 110, coarse_tet = 140;
   /// A lattice tet while points are moved. What is freed afterwards is only partly used for the tets.
   static constexpr double lattice_tet = 50;
-  /// A face of the dense surface: with its brick, with its samples and trees in the simplifier, and in a file.
+  /// A face of the dense surface: with its brick, with its samples and trees in the simplifier, and in a
+  /// file.
   static constexpr double kept_face = 60, face = 150, filed_face = 20;
   /// A coarse tet with its brick, and in a file.
   static constexpr double kept_tet = 30, filed_tet = 10;

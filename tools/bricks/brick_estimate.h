@@ -8,7 +8,7 @@
 
 namespace tetwright {
 
-/// What a job in bricks needs, bytes.
+/// The memory and space that a job in bricks needs, bytes.
 struct BrickEstimate {
   double memory = 0;   ///< peak, including the program and its libraries
   double scratch = 0;  ///< for the files of all bricks

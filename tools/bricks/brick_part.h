@@ -11,8 +11,8 @@
 
 namespace tetwright {
 
-/// What a brick contributes to the mesh of a volume: its dense mesh, coarsened, and what must be known of the
-/// dense one. Lengths in input units.
+/// A brick's contribution to the mesh of a volume: its dense mesh, coarsened, and all that must be known of
+/// the dense one. Lengths in input units.
 struct BrickPart {
   BrickBorder border;
   bool kept_surface = false;  ///< BrickTask::keep_surface
@@ -28,8 +28,8 @@ struct BrickPart {
   /// Faces of the dense mesh that belong to a tet of another brick, too, unless they are on its boundary.
   std::vector<InterfaceTriangle> cut_faces;
 
-  /// Of the dense mesh, without interfaces. Only points that no other brick has are counted, and the volumes
-  /// in the histogram are relative to the brick's mean.
+  /// Statistics of the dense mesh, without interfaces. Only points that no other brick has are counted, and
+  /// the volumes in the histogram are relative to the brick's mean.
   MeshStatistics dense;
   std::size_t leaves = 0, lattice_tets = 0, isolated_vertices = 0;
 };

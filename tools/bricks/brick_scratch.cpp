@@ -66,9 +66,12 @@ BrickScratch::BrickScratch(std::string folder, const BrickJob& job) : folder_(st
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
       if (const std::string name = entry.path().filename().string();
           name.starts_with(temporary_prefix) && name.ends_with(temporary_suffix))
-        fs::remove(entry.path());
+        fs::remove(entry.path(), error);
     if (fs::exists(path))
       check_job(path, described);
+    else if (used_bytes() > 0)
+      throw UsageError(folder_ + ": there are bricks of an unknown job, without " + job_file +
+                       "; give --scratch another folder, or delete this one");
     else
       write_file_atomically(path.string(), described.dump(1) + "\n");
   } catch (...) {
@@ -111,15 +114,14 @@ double BrickScratch::used_bytes() const {
   return bytes;
 }
 
-void remove_brick_scratch(const std::string& folder) noexcept {
-  if (folder.empty()) return;
+void BrickScratch::remove() const noexcept {
   try {
     std::error_code error;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-      const std::string name = entry.path().filename().string();
-      if (name == job_file || is_brick(name)) fs::remove(entry.path(), error);
-    }
-    fs::remove(folder, error);
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
+      if (is_brick(entry.path().filename().string())) fs::remove(entry.path(), error);
+    // Last: bricks without their job would be those of any job.
+    fs::remove(fs::path(folder_) / job_file, error);
+    fs::remove(folder_, error);
   } catch (const std::exception&) {
     return;
   }

@@ -18,7 +18,7 @@ using BrickJob = std::vector<std::pair<std::string, std::string>>;
 class BrickScratch {
  public:
   /// Opens the folder, or makes it.
-  /// \throws UsageError if it has files of another job or if another process uses it
+  /// \throws UsageError if it has files of another job, or of an unknown one, or if another process uses it
   /// \throws OutputError if it cannot be written
   BrickScratch(std::string folder, const BrickJob& job);
   ~BrickScratch();
@@ -35,14 +35,13 @@ class BrickScratch {
   /// Space for more files, and of the files of bricks there are; bytes.
   double free_bytes() const;
   double used_bytes() const;
+  /// Removes the files of all bricks and of the job, and the folder if nothing else is in it. Errors are
+  /// ignored: the job is finished.
+  void remove() const noexcept;
 
  private:
   std::string folder_;
   int lock_ = -1;
 };
-
-/// Removes the files of all bricks and of the job from a folder, and the folder if nothing else is in it.
-/// Errors are ignored: the job is finished. \param folder may be empty: none
-void remove_brick_scratch(const std::string& folder) noexcept;
 
 }  // namespace tetwright

@@ -100,16 +100,16 @@ BrickJob describe(const LabelInput& labels, const MesherOptions& options, int si
 /// The bricks of a job, in memory or in files.
 class Bricks {
  public:
-  Bricks(std::size_t count, std::unique_ptr<const BrickScratch> scratch, BrickReport& report)
-      : scratch_(std::move(scratch)), parts_(count), report_(report) {
-    report.bricks = count;
+  Bricks(const std::vector<CellBox>& boxes, const BrickScratch* scratch, BrickReport& report)
+      : boxes_(boxes), scratch_(scratch), parts_(boxes.size()), report_(report) {
+    report.bricks = boxes.size();
   }
 
   /// The border of a brick if a file has what the task asks for.
   std::optional<BrickBorder> finished(const BrickTask& task) {
     if (!scratch_ || !scratch_->has(task.brick)) return {};
     try {
-      BrickPart part = brick_part(scratch_->read(task.brick), scratch_->file(task.brick));
+      BrickPart part = read(task.brick);
       if (part.border.halo < task.halo || part.kept_surface < task.keep_surface) return {};
       ++report_.resumed;
       return std::move(part.border);
@@ -136,13 +136,9 @@ class Bricks {
   /// Joins all parts.
   GatheredMesh joined(const std::map<MaterialTag, std::string>& names) {
     if (!scratch_) return gather(parts_, names);
-    report_.scratch_bytes = 0;
     std::vector<BrickPart> parts;
-    for (std::size_t b = 0; b < parts_.size(); ++b) {
-      const std::string bytes = scratch_->read(b);
-      report_.scratch_bytes += static_cast<double>(bytes.size());
-      parts.push_back(brick_part(bytes, scratch_->file(b)));
-    }
+    for (std::size_t b = 0; b < parts_.size(); ++b) parts.push_back(read(b));
+    report_.scratch_bytes = scratch_->used_bytes();
     return gather(parts, names);
   }
 
@@ -150,7 +146,16 @@ class Bricks {
   void clear() { parts_ = {}; }
 
  private:
-  std::unique_ptr<const BrickScratch> scratch_;
+  BrickPart read(std::size_t brick) const {
+    const std::string file = scratch_->file(brick);
+    BrickPart part = brick_part(scratch_->read(brick), file);
+    if (part.border.brick != boxes_[brick])
+      throw InputError(file, 0, "this is another brick; delete the file, and the same call makes it again");
+    return part;
+  }
+
+  const std::vector<CellBox>& boxes_;
+  const BrickScratch* scratch_;  ///< null: in memory
   std::vector<BrickPart> parts_;
   BrickReport& report_;
 };
@@ -189,12 +194,11 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double de
   MesherReport& report = made.report;
   BrickReport& bricks = run.report.bricks.emplace();
   bricks.cells = side;
-  bricks.scratch = run.options.bricks.scratch;
-  std::unique_ptr<const BrickScratch> scratch;
   const bool leads = !run.options.bricks.team || run.options.bricks.team->is_leader();
-  if (!bricks.scratch.empty() && leads)
-    scratch = std::make_unique<BrickScratch>(bricks.scratch, describe(labels, options, side, run));
-  if (leads) check_space(labels, options, dense_tets, side, scratch.get(), run);
+  if (!run.options.bricks.scratch.empty() && leads)
+    run.scratch =
+        std::make_shared<BrickScratch>(run.options.bricks.scratch, describe(labels, options, side, run));
+  if (leads) check_space(labels, options, dense_tets, side, run.scratch.get(), run);
   Stages stages(&run.progress);
   stages.begin("signed distances");
   VolumeField volume = make_volume_field(labels, options, report, &run.progress);
@@ -218,7 +222,7 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double de
     team->help(make);
     throw HelperFinished();
   }
-  Bricks all(boxes.size(), std::move(scratch), bricks);
+  Bricks all(boxes, run.scratch.get(), bricks);
   std::vector<BrickBorder> borders(boxes.size());
   const auto make_all = [&](const std::vector<BrickTask>& tasks) {
     std::vector<BrickTask> left;

@@ -151,6 +151,10 @@ DenseMesh mesh_input(LabelInput& labels, PrepareRun& run) {
     throw UsageError(
         "--tolerance of 'mesh' is for surfaces; for a volume use 'prepare --tolerance', which bounds the "
         "distance from the dense mesh");
+  if (side == 0 && !run.options.bricks.scratch.empty())
+    run.progress.announce(
+        "the dense mesh fits in memory, so that --scratch is not used; --bricks CELLS "
+        "makes bricks all the same");
   if (side > 0)
     return mesh_bricks(std::move(labels), options, static_cast<double>(estimate->tets), side, run);
   DenseMesh dense = mesh_labels(labels, options, &run.progress);

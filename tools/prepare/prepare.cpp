@@ -99,7 +99,7 @@ Prepared carry_out_within(Task task, std::vector<Input> inputs, const PrepareOpt
     PrepareReport report;
     PrepareRun run(task, options, progress ? *progress : silent, report);
     result = carry_out(std::move(inputs), run);
-    if (report.bricks) remove_brick_scratch(report.bricks->scratch);
+    if (result.scratch) std::exchange(result.scratch, nullptr)->remove();
     result.report = std::move(report);
   });
   return result;
@@ -121,7 +121,9 @@ Prepared carry_out(std::vector<Input> inputs, PrepareRun& run) {
   } catch (const OutOfTime&) {
     throw OutOfTime("out of time: after the " + short_number(run.options.limits.seconds.value_or(0)) +
                     " s of --time-limit there was no mesh yet (in stage '" + run.progress.stage() +
-                    "'), and nothing was written; give more time" +
+                    "'), and nothing was written; " +
+                    (run.scratch ? "the same call goes on from the finished bricks, or give more time"
+                                 : "give more time") +
                     (of_scans ? ", or larger cells by a lower --resolution" : ""));
   }
   // Comparing and returning the mesh has no deadline.
@@ -132,6 +134,7 @@ Prepared carry_out(std::vector<Input> inputs, PrepareRun& run) {
   if (run.caps)
     run.report.caps = run.caps->name(result.mesh, run.task == Task::mesh ? CapNaming::sharp : CapNaming::all);
   result.midside = std::move(run.midside);
+  result.scratch = std::move(run.scratch);
   run.progress.throw_if_stopped();
   return result;
 }

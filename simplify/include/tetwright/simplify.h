@@ -96,7 +96,7 @@ enum class Schedule : std::uint8_t {
   paper   ///< Figure 3 of the paper with its operations in its order; no improvement afterwards
 };
 
-/// What a mesh no longer shows of the one from which coarsen() made its parts.
+/// A dense mesh, as far as the mesh of the parts that coarsen() made of it no longer shows it.
 struct OriginalMesh {
   TetMesh surface;                        ///< its boundary and interfaces with their patches; no tets
   std::map<MaterialTag, double> volumes;  ///< of all materials, input units cubed

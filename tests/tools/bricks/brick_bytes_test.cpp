@@ -165,7 +165,7 @@ TEST(BrickBytes, OtherBytesAreRefused) {
        {std::string(), std::string("x"), std::string(1000, '\0'), std::string("mesh"), bytes + "x",
         bytes + std::string(8, '\0'), bytes + bytes, "x" + bytes, compressed(""), compressed("brick")})
     EXPECT_FALSE(refusal(other).empty()) << other.size() << " bytes";
-  EXPECT_EQ(refusal({}), "brick-7: this is no brick");
+  EXPECT_NE(refusal({}).find("incomplete"), std::string::npos);
 }
 
 // The checksum does not protect against a part that was written incompletely, or by another version.
@@ -179,8 +179,8 @@ TEST(BrickBytes, ContentsOfAnotherSizeAreRefused) {
 
 TEST(BrickBytes, AHugeCountIsRefusedBeforeMemoryIsTaken) {
   const std::string all = decompressed(to_bytes(small_part()));
-  // The first vector's size follows the box and the halo.
-  const std::size_t at = sizeof(CellBox) + sizeof(int);
+  // The first vector's size follows the box, the halo and whether the surface was kept.
+  const std::size_t at = sizeof(CellBox) + sizeof(int) + sizeof(bool);
   for (const std::size_t count :
        {std::size_t{1} << 30, std::size_t{1} << 60, std::numeric_limits<std::size_t>::max()}) {
     std::string damaged = all;
@@ -195,7 +195,7 @@ TEST(BrickBytes, AHugeSizeIsRefusedBeforeMemoryIsTaken) {
     // The header of a frame in one segment with its size in eight bytes.
     std::string huge = bytes.substr(0, 4) + '\xe0' + std::string(8, '\0') + bytes.substr(8);
     std::memcpy(huge.data() + 5, &size, sizeof size);
-    EXPECT_EQ(refusal(huge), "brick-7: this is no brick") << size;
+    EXPECT_NE(refusal(huge).find("brick-7: the brick is damaged"), std::string::npos) << size;
   }
 }
 

@@ -172,14 +172,13 @@ TEST_F(BrickScratchTest, AFullDiskLeavesTheOtherBricks) {
 
 TEST_F(BrickScratchTest, NothingIsLeftAtTheEndExceptForeignFiles) {
   for (const bool foreign : {true, false}) {
-    {
-      const BrickScratch scratch(path(), job);
-      for (const std::size_t brick : {0, 9, 1000}) scratch.write(brick, "x");
-    }
+    const BrickScratch scratch(path(), job);
+    for (const std::size_t brick : {0, 9, 1000}) scratch.write(brick, "x");
+    EXPECT_EQ(scratch.used_bytes(), 3);
     const std::vector<std::string> names{"notes.txt", "brick-1.txt", "my-brick-2.tetwright", "tetwright-job"};
     for (const std::string& name : names)
       if (foreign) put(path(name), name);
-    remove_brick_scratch(path());
+    scratch.remove();
     EXPECT_EQ(std::filesystem::exists(path()), foreign);
     if (!foreign) continue;
     EXPECT_EQ(static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(path()), {})),
@@ -189,8 +188,14 @@ TEST_F(BrickScratchTest, NothingIsLeftAtTheEndExceptForeignFiles) {
       std::filesystem::remove(path(name));
     }
   }
-  remove_brick_scratch(path());  // no longer there
-  remove_brick_scratch("");
+}
+
+TEST_F(BrickScratchTest, BricksOfAnUnknownJobAreRefused) {
+  { BrickScratch(path(), job).write(0, "x"); }
+  std::filesystem::remove(path("tetwright-job.json"));
+  expect_error<UsageError>([&] { const BrickScratch scratch(path(), job); },
+                           {path(), "unknown job", "tetwright-job.json", "--scratch"});
+  EXPECT_EQ(contents(path("brick-0.tetwright")), "x");
 }
 
 }  // namespace

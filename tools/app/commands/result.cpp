@@ -61,7 +61,7 @@ void write_result(Prepared& result, CommandRun& run) {
   run.report.loops_total = run.since_start.loops();
   write_stats(run, files);
   files.commit();
-  if (run.report.bricks) remove_brick_scratch(run.report.bricks->scratch);
+  if (result.scratch) result.scratch->remove();
   run.progress.finish();
 }
 

@@ -167,6 +167,7 @@ struct BodyOptions {
   bool split_solids = false;
 };
 
+class BrickScratch;
 class BrickTeam;
 
 /// Meshing and coarsening of a segmented volume in bricks, so that its dense mesh is never in memory at once.
@@ -346,7 +347,6 @@ struct BrickReport {
   std::size_t resumed = 0;      ///< bricks that were finished before
   std::size_t coarse_tets = 0;  ///< tets of all coarsened bricks
   double scratch_bytes = 0;     ///< of all bricks' files
-  std::string scratch;          ///< folder of these files; the caller removes them when it has the result
 };
 
 /// Report of a run. Members that belong to steps which are not run stay empty.
@@ -400,6 +400,9 @@ struct Prepared {
   /// Signed distances that were meshed, for write_fields(). Null for tet meshes, and unless
   /// KeepOptions::field.
   std::shared_ptr<const MaterialField> field;
+  /// The folder of finished bricks, locked, with BrickOptions::scratch; carry_out() leaves it to the caller,
+  /// who removes them once the mesh is safe. prepare() does so itself.
+  std::shared_ptr<const BrickScratch> scratch;
 
   /// Notes and shortfalls.
   const std::vector<Diagnostic>& diagnostics() const { return report.diagnostics; }

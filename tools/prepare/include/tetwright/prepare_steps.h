@@ -73,6 +73,7 @@ struct PrepareRun {
   std::shared_ptr<const CapFaces> caps;  ///< of the surfaces; null without holes
   /// The dense mesh of a volume in bricks, as far as its coarsened mesh no longer shows it.
   std::optional<OriginalMesh> original;
+  std::shared_ptr<const BrickScratch> scratch;  ///< Prepared::scratch
 };
 
 /// Adds diagnostics for contents that a reader dropped.
