@@ -39,19 +39,27 @@ MesherOptions common_options(const PrepareRun& run) {
 /// Most estimates of memory are within this factor.
 constexpr double estimate_margin = 1.25;
 
-/// Enlarges cells whose size was not requested until the estimated memory is available. Returns the estimate.
-template <class Scan>
-MesherEstimate fit_memory(const Scan& input, MesherOptions& options, PrepareRun& run) {
+/// How an input can be meshed with cells of some size.
+struct Need {
+  MesherEstimate whole;
+  double bytes = 0;     ///< memory, in bricks if there are any
+  int brick_cells = 0;  ///< edge of the bricks; 0: none
+};
+
+/// Enlarges cells whose size was not requested until the memory that they need is available.
+/// \param need of options, a Need
+template <class Scan, class NeedOf>
+Need fit_memory(const Scan& input, const NeedOf& need, MesherOptions& options, PrepareRun& run) {
   constexpr double growth = 1.25;
   constexpr double min_fitted_resolution = 16;  // a body is not recognisable with fewer cells
   const double available = available_memory() / estimate_margin;
-  const MesherEstimate wanted = estimate_mesh(input, options);
-  if (static_cast<double>(wanted.bytes) <= available) return wanted;
+  const Need wanted = need(options);
+  if (wanted.bytes <= available) return wanted;
   const auto cell = [&](const MesherOptions& o) {
     return o.voxel_size > 0 ? o.voxel_size : longest_side(input) / o.resolution;
   };
   MesherOptions larger = options;
-  MesherEstimate estimate;
+  Need needed = wanted;
   do {
     if (options.voxel_size > 0)
       larger.voxel_size *= growth;
@@ -59,11 +67,11 @@ MesherEstimate fit_memory(const Scan& input, MesherOptions& options, PrepareRun&
       larger.resolution = static_cast<int>(larger.resolution / growth);
     if (longest_side(input) / cell(larger) < min_fitted_resolution)
       return wanted;  // rejected later, with numbers
-    estimate = estimate_mesh(input, larger);
-  } while (static_cast<double>(estimate.bytes) > available);
-  run.report.coarser = {cell(options), cell(larger), static_cast<double>(wanted.bytes)};
+    needed = need(larger);
+  } while (needed.bytes > available);
+  run.report.coarser = {cell(options), cell(larger), wanted.bytes};
   options = larger;
-  return estimate;
+  return needed;
 }
 
 DenseMesh mesh_input(const MesherInput& surfaces, PrepareRun& run) {
@@ -91,7 +99,11 @@ DenseMesh mesh_input(const MesherInput& surfaces, PrepareRun& run) {
     options.resolution = resolution_for_target(surfaces, *target.tets, run.options.feature_angle);
   if (choose && run.task == Task::prepare)
     choose_cells_for_sizes(surfaces, sizes.target_length.get(), sizes.limits.max_edge, options);
-  if (choose) fit_memory(surfaces, options, run);
+  const auto need = [&](const MesherOptions& of) {
+    const MesherEstimate whole = estimate_mesh(surfaces, of);
+    return Need{whole, static_cast<double>(whole.bytes), 0};
+  };
+  if (choose) fit_memory(surfaces, need, options, run);
   if (!target.tolerance) {
     DenseMesh dense = mesh_surfaces(surfaces, options, &run.progress);
     run.report.gap_opening = find_gap_opening(surfaces, dense.report, run.options);
@@ -113,19 +125,26 @@ Box3 box_of(const LabelInput& labels) {
   return box;
 }
 
-/// Edge of the bricks in which a volume is meshed; 0: whole.
-int brick_cells(const LabelInput& labels, const MesherOptions& options, const MesherEstimate& whole,
-                const PrepareRun& run) {
+/// How a volume is meshed: whole if it fits, otherwise in the largest bricks that fit.
+Need need_of(const LabelInput& labels, const MesherOptions& options, const PrepareRun& run) {
   const BrickOptions& asked = run.options.bricks;
-  if (asked.use == BrickOptions::Use::always) return asked.cells;
-  if (asked.use == BrickOptions::Use::never || conflict_with_bricks(run.options)) return 0;
+  Need need{estimate_mesh(labels, options), 0, 0};
+  need.bytes = static_cast<double>(need.whole.bytes);
+  const bool always = asked.use == BrickOptions::Use::always;
   const double available = available_memory() / estimate_margin;
-  if (static_cast<double>(whole.bytes) <= available) return 0;
-  const auto dense = static_cast<double>(whole.tets);
+  if (!always && (asked.use == BrickOptions::Use::never || run.task != Task::prepare ||
+                  conflict_with_bricks(run.options) || need.bytes <= available))
+    return need;
+  const auto dense = static_cast<double>(need.whole.tets);
   const std::size_t target = *run.options.target.tets;
   const bool scratch = !asked.scratch.empty();
-  const int side = largest_bricks(labels, options, dense, target, scratch, available);
-  return estimate_bricks(labels, options, dense, side, target, scratch).memory <= available ? side : 0;
+  const int side = always ? asked.cells : largest_bricks(labels, options, dense, target, scratch, available);
+  const double bytes = estimate_bricks(labels, options, dense, side, target, scratch).memory;
+  if (always || bytes < need.bytes) {
+    need.bytes = bytes;
+    need.brick_cells = side;
+  }
+  return need;
 }
 
 DenseMesh mesh_input(LabelInput& labels, PrepareRun& run) {
@@ -137,26 +156,27 @@ DenseMesh mesh_input(LabelInput& labels, PrepareRun& run) {
     options.voxel_size = run.task == Task::prepare && target.tets
                              ? cell_size_for_target(labels, *target.tets, options)
                              : default_cell_size(labels);
-  std::optional<MesherEstimate> estimate;
-  if (run.task == Task::prepare) estimate = estimate_mesh(labels, options);
-  const int side = estimate ? brick_cells(labels, options, *estimate, run) : 0;
-  if (choose && side == 0) estimate = fit_memory(labels, options, run);
+  const auto need_for = [&](const MesherOptions& of) { return need_of(labels, of, run); };
+  const Need need = choose                      ? fit_memory(labels, need_for, options, run)
+                    : run.task == Task::prepare ? need_for(options)
+                                                : Need();
   if (run.task == Task::prepare)
-    run.progress.announce(
-        expected_time_line({static_cast<double>(estimate->tets), static_cast<double>(target.tets.value_or(0)),
-                            static_cast<double>(labels.voxel_count())},
-                           std::min(thread_count(), std::max(1u, std::thread::hardware_concurrency()))));
+    run.progress.announce(expected_time_line(
+        {static_cast<double>(need.whole.tets), static_cast<double>(target.tets.value_or(0)),
+         static_cast<double>(labels.voxel_count())},
+        std::min(thread_count(), std::max(1u, std::thread::hardware_concurrency()))));
   read_sizes(run, box_of(labels));
   if (target.tolerance && run.task == Task::mesh)
     throw UsageError(
         "--tolerance of 'mesh' is for surfaces; for a volume use 'prepare --tolerance', which bounds the "
         "distance from the dense mesh");
-  if (side == 0 && !run.options.bricks.scratch.empty())
+  if (need.brick_cells == 0 && !run.options.bricks.scratch.empty())
     run.progress.announce(
         "the dense mesh fits in memory, so that --scratch is not used; --bricks CELLS "
         "makes bricks all the same");
-  if (side > 0)
-    return mesh_bricks(std::move(labels), options, static_cast<double>(estimate->tets), side, run);
+  if (need.brick_cells > 0)
+    return mesh_bricks(std::move(labels), options, static_cast<double>(need.whole.tets), need.brick_cells,
+                       run);
   DenseMesh dense = mesh_labels(labels, options, &run.progress);
   if (target.tolerance) run.report.tolerance = tolerance_of(*target.tolerance, diagonal_of(dense.mesh));
   return dense;
