@@ -87,6 +87,26 @@ def test_labels_give_the_bytes_of_the_program(tmp_path):
     assert set(only.materials.tolist()) == {7}
 
 
+def test_bricks_give_the_bytes_of_the_program(tmp_path):
+    labels = np.zeros((40, 20, 20), np.uint8)
+    labels[3:37, 3:17, 3:17] = 1
+    labels[25:31, 6:14, 6:14] = 2
+    with open(tmp_path / "v.nrrd", "wb") as file:
+        file.write(b"NRRD0004\ntype: uchar\ndimension: 3\nsizes: 40 20 20\nencoding: raw\nspacings: 1 1 1\n\n")
+        file.write(labels.tobytes(order="F"))
+    run_program("prepare", tmp_path / "v.nrrd", "--target-tets", 900, "--voxel-size", 1, "--bricks", 32,
+                "-o", tmp_path / "program.vtu")
+    expected = meshio.read(tmp_path / "program.vtu")
+    for options in (dict(bricks=32), dict(bricks=np.int64(32), scratch=tmp_path / "bricks")):
+        mesh = tetwright.prepare(labels, target_tets=900, voxel_size=1, **options)
+        assert np.array_equal(mesh.tets, expected.cells_dict["tetra"])
+        assert np.array_equal(mesh.points - mesh.points[0], expected.points - expected.points[0])
+        assert mesh.stats["dense"]["bricks"]["count"] == 2
+    assert not (tmp_path / "bricks").exists()
+    with pytest.raises(tetwright.UsageError, match="--bricks: '33' is not auto, off or a power of two"):
+        tetwright.prepare(labels, target_tets=900, bricks=33)
+
+
 def test_images_of_nibabel(tmp_path):
     labels = labels_of_two_balls()
     affine = np.diag([2, 2, 3, 1.0])

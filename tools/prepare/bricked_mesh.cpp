@@ -188,6 +188,11 @@ void check_space(const LabelInput& labels, const MesherOptions& options, double 
 
 }  // namespace
 
+void remove_bricks(Prepared& result) noexcept {
+  if (result.scratch) result.scratch->remove();
+  result.scratch.reset();
+}
+
 DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double dense_tets, int side,
                       PrepareRun& run) {
   DenseMesh made;

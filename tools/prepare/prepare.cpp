@@ -11,7 +11,6 @@
 #include "tetwright/mesh_quality.h"
 #include "tetwright/prepare_steps.h"
 #include "tetwright/simplify.h"
-#include "tools/bricks/brick_scratch.h"
 #include "tools/prepare/input_changes.h"
 
 namespace tetwright {
@@ -99,7 +98,7 @@ Prepared carry_out_within(Task task, std::vector<Input> inputs, const PrepareOpt
     PrepareReport report;
     PrepareRun run(task, options, progress ? *progress : silent, report);
     result = carry_out(std::move(inputs), run);
-    if (result.scratch) std::exchange(result.scratch, nullptr)->remove();
+    remove_bricks(result);
     result.report = std::move(report);
   });
   return result;

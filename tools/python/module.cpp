@@ -156,6 +156,7 @@ std::shared_ptr<Mesh> run(std::vector<std::string> arguments, NamedInputs& input
             if (!line.outputs.mesh.empty()) check_output_paths(line);
             result = make_result(run);
             if (!line.outputs.mesh.empty()) write_result(result, run);
+            remove_bricks(result);
           });
           made->stats = stats_json(run);
           made->notes = notes_of(run.report);

@@ -11,7 +11,6 @@
 #include "tetwright/tet_parts.h"
 #include "tools/app/commands/report_file.h"
 #include "tools/app/printed_report.h"
-#include "tools/bricks/brick_scratch.h"
 #include "tools/report/stats_json.h"
 
 namespace tetwright {
@@ -61,7 +60,7 @@ void write_result(Prepared& result, CommandRun& run) {
   run.report.loops_total = run.since_start.loops();
   write_stats(run, files);
   files.commit();
-  if (result.scratch) result.scratch->remove();
+  remove_bricks(result);
   run.progress.finish();
 }
 

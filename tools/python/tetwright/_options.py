@@ -72,11 +72,11 @@ def _texts(key: str, kind: str, value: Any, inputs: Inputs) -> Iterable[bytes]:
 
 def _text(key: str, kind: str, value: Any) -> bytes:
     """Formats a value of a kind, as the program's help names it."""
-    if kind == "FILE":
+    if kind in ("FILE", "DIR"):
         return file_name(value, key)
     if isinstance(value, str):
         return plain_text(value, key)
-    if kind in ("N", "LABEL"):
+    if kind in ("N", "LABEL") or "CELLS" in kind:
         return _whole_number(key, value)
     if kind in ("NUMBER", "LENGTH") or "DEGREES" in kind:
         return _number(key, value)

@@ -125,6 +125,9 @@ DenseMesh make_dense_mesh(ScanInput input, PrepareRun& run);
 DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double dense_tets, int side,
                       PrepareRun& run);
 
+/// Removes the files of finished bricks, now that the result is safe. Nothing happens without any.
+void remove_bricks(Prepared& result) noexcept;
+
 /// The first option that bricks cannot serve, such as "--uniform"; null if there is none.
 const char* conflict_with_bricks(const PrepareOptions& options);
 
