@@ -27,7 +27,10 @@ std::size_t frozen_faces(const EditableMesh& mesh) {
 }  // namespace
 
 TetMesh coarsen(TetMesh mesh, const CoarsenOptions& options, SimplifyReport* report, Progress* progress) {
-  if (!(options.target_tets > 0)) throw UsageError("a target of 0 tets leaves nothing; give more");
+  if (!(options.target_tets > 0) || !std::isfinite(options.target_tets))
+    throw UsageError("the target must be a number of tets above 0");
+  if (!(options.beta > 0) || !(options.gamma >= 0))
+    throw UsageError("beta must be above 0 and gamma at least 0");
   check_mesh(mesh, options.frozen, options.name);
   Engine engine(std::move(mesh),
                 {options.name, options.target_tets, options.beta, options.gamma, options.seed,

@@ -81,6 +81,8 @@ void check_options(const SimplifyOptions& options) {
   if (!(options.tolerance >= 0)) throw UsageError("the tolerance must be at least 0");
   if (!(options.beta > 0) || !(options.gamma >= 0))
     throw UsageError("beta must be above 0 and gamma at least 0");
+  if (options.original && options.surface)
+    throw UsageError("give the original mesh or a surface to follow, not both");
 }
 
 /// False if the deadline of `progress` ended the work. Earlier changes are kept: a BlockRunner stops between

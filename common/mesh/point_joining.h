@@ -22,7 +22,8 @@ struct JoinedPoints {
 };
 
 /// Joins pieces at the shared points with equal coordinates.
-/// \pre the points of a piece are distinct; at most no_index of all pieces
+/// \pre the points of a piece are distinct
+/// \throws OutputError if the points of all pieces are too many for an Index
 JoinedPoints join_points(std::span<const PiecePoints> pieces);
 
 }  // namespace tetwright

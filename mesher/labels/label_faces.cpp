@@ -59,26 +59,29 @@ FaceAreas face_areas(const LabelInput& labels) {
   return areas;
 }
 
-double largest_share_of_faces(const LabelInput& labels, const std::array<double, 3>& box) {
-  const auto boxes = [&](int axis) {
-    return static_cast<std::size_t>((labels.size[axis] - 1) / box[axis]) + 1;
-  };
-  const std::size_t nx = boxes(0), ny = boxes(1);
+BoxFaces faces_of_boxes(const LabelInput& labels, const std::array<double, 3>& box) {
+  BoxFaces faces;
+  for (int a = 0; a < 3; ++a) faces.boxes[a] = static_cast<std::size_t>((labels.size[a] - 1) / box[a]) + 1;
+  const std::size_t nx = faces.boxes[0], in_layer = nx * faces.boxes[1];
   const auto slices = static_cast<std::size_t>(labels.size[2]);
   std::vector<std::vector<std::size_t>> of_slices(slices);
   parallel_for(0, slices, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t z = begin; z < end; ++z) {
-      of_slices[z].assign(nx * ny, 0);
+      of_slices[z].assign(in_layer, 0);
       for_each_face(labels, z, [&](int x, int y, int, bool) {
         ++of_slices[z][static_cast<std::size_t>(y / box[1]) * nx + static_cast<std::size_t>(x / box[0])];
       });
     }
   });
-  std::vector<std::size_t> counts(nx * ny * boxes(2), 0);
+  faces.counts.assign(in_layer * faces.boxes[2], 0);
   for (std::size_t z = 0; z < slices; ++z) {
-    const std::size_t first = static_cast<std::size_t>(static_cast<double>(z) / box[2]) * nx * ny;
-    for (std::size_t b = 0; b < nx * ny; ++b) counts[first + b] += of_slices[z][b];
+    const std::size_t first = static_cast<std::size_t>(static_cast<double>(z) / box[2]) * in_layer;
+    for (std::size_t b = 0; b < in_layer; ++b) faces.counts[first + b] += of_slices[z][b];
   }
+  return faces;
+}
+
+double BoxFaces::largest_share() const {
   const std::size_t all = std::accumulate(counts.begin(), counts.end(), std::size_t{0});
   if (all == 0) return 1;
   return static_cast<double>(*std::max_element(counts.begin(), counts.end())) / static_cast<double>(all);

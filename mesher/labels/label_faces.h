@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <vector>
 
 #include "tetwright/mesher_input.h"
 
@@ -16,8 +18,17 @@ struct FaceAreas {
 /// Runs in parallel; the result does not depend on the number of threads.
 FaceAreas face_areas(const LabelInput& labels);
 
-/// The volume is divided into boxes of this many voxels along each axis: the largest share of the faces
-/// between voxels of different regions that one of them has; 1 if there are none. Parallel.
-double largest_share_of_faces(const LabelInput& labels, const std::array<double, 3>& box);
+/// Numbers of faces between voxels of different regions in the boxes into which a volume is divided.
+struct BoxFaces {
+  std::array<std::size_t, 3> boxes{};  ///< along each axis
+  std::vector<std::size_t> counts;     ///< by box, the first axis fastest
+
+  /// Share of all faces that are in the box with most of them; 1 if there are none.
+  double largest_share() const;
+};
+
+/// Parallel.
+/// \param box voxels along each axis
+BoxFaces faces_of_boxes(const LabelInput& labels, const std::array<double, 3>& box);
 
 }  // namespace tetwright

@@ -15,7 +15,7 @@ struct OriginalSurface {
 };
 
 /// Parallel.
-/// \pre the mesh has all materials of the original
+/// \throws UsageError if the mesh lacks a material of the original, or a triangle of it a point
 OriginalSurface surface_of(const EditableMesh& mesh, const OriginalMesh& original);
 
 }  // namespace tetwright

@@ -4,11 +4,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "mesher/labels/label_faces.h"
 #include "mesher/mesh_estimate.h"
 #include "mesher/tuning/cell_tuning.h"
 #include "tetwright/prepare.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 
@@ -19,8 +21,9 @@ struct PerItem {
   static constexpr double program = 60e6;
   /// A tet of a brick while it is coarsened, and a coarse one while it is simplified.
   static constexpr double tet = 110, coarse_tet = 140;
-  /// A lattice tet while points are moved. What is freed afterwards is only partly used for the tets.
-  static constexpr double lattice_tet = 50;
+  /// A lattice tet while points are moved. With all threads at one brick each of them keeps freed memory, so
+  /// that it is not used for the tets afterwards.
+  static constexpr double lattice_tet = 33, lattice_tet_of_all = 50;
   /// A face of the dense surface: with its brick, with its samples and trees in the simplifier, and in a
   /// file.
   static constexpr double kept_face = 60, face = 150, filed_face = 20;
@@ -31,49 +34,85 @@ struct PerItem {
 /// Faces of the dense surface, and of a cut through it: for each dense tet, and for each squared cell and
 /// density^(2/3).
 constexpr double faces_per_tet = 0.1, cut_faces_per_area = 0.6;
+/// Bytes of the borders of bricks for each squared cell of a cut: they are compared once all bricks are made.
+constexpr double border_bytes_per_area = 100;
+/// Max number of tets of a mesh to simplify, 2^30, with a margin for estimates.
+constexpr double max_tets = 0.8 * (1 << 30);
+/// Larger bricks gain little: cells around them are 20 % of these.
+constexpr int max_chosen_cells = 256;
 /// Tets after coarsening for each final one, and for each face of a cut and side (coarsen()).
 constexpr double coarse_per_final = 8, coarse_per_cut_face = 2;
 
 }  // namespace
 
-BrickEstimate estimate_bricks(const LabelInput& labels, const MesherOptions& options, double dense, int side,
-                              std::size_t target, bool scratch) {
-  const double cell = cell_size(labels, options);
-  std::array<double, 3> voxels, cells;
+std::array<double, 3> voxels_of_bricks(const LabelInput& labels, double cell, int cells) {
+  std::array<double, 3> voxels;
+  for (int a = 0; a < 3; ++a) voxels[a] = std::max(1.0, cells * cell / labels.directions.col(a).norm());
+  return voxels;
+}
+
+BrickEstimator::BrickEstimator(const LabelInput& labels, const MesherOptions& options, double dense,
+                               std::size_t target, bool scratch)
+    : labels_(labels),
+      cell_(cell_size(labels, options)),
+      dense_(dense),
+      target_(static_cast<double>(target)),
+      field_(PerItem::program + label_memory(labels).beside),
+      before_(PerItem::program + label_memory(labels).before),
+      scratch_(scratch) {}
+
+BrickEstimator::Needs BrickEstimator::needs(int side) const {
+  std::array<double, 3> cells;
   double cuts = 0, all_cells = 1;
   for (int a = 0; a < 3; ++a) {
-    const double spacing = labels.directions.col(a).norm();
-    voxels[a] = std::max(1.0, side * cell / spacing);
-    cells[a] = labels.size[a] * spacing / cell;
+    cells[a] = labels_.size[a] * labels_.directions.col(a).norm() / cell_;
     all_cells *= cells[a];
   }
   for (int a = 0; a < 3; ++a)
     cuts += (std::ceil(cells[a] / side) - 1) * cells[(a + 1) % 3] * cells[(a + 2) % 3];
-  const double density = dense / all_cells;
-  const double cut_faces = 2 * cuts * cut_faces_per_area * std::pow(density, 2.0 / 3);
-  const double coarse =
-      std::min(dense, coarse_per_final * static_cast<double>(target) + coarse_per_cut_face * cut_faces);
-  const double faces = faces_per_tet * dense;
-  const double largest = dense * largest_share_of_faces(labels, voxels);
-  const double grown = std::min(dense, largest * std::pow(1 + 2.0 * CellTuning::Bricks::halo / side, 3));
-  const double field = PerItem::program + label_memory(labels).beside;
+  const double cut_faces = 2 * cuts * cut_faces_per_area * std::pow(dense_ / all_cells, 2.0 / 3);
+  const double coarse = std::min(dense_, coarse_per_final * target_ + coarse_per_cut_face * cut_faces);
+  const double faces = faces_per_tet * dense_;
+  const double largest =
+      dense_ * faces_of_boxes(labels_, voxels_of_bricks(labels_, cell_, side)).largest_share();
+  const double grown = std::min(dense_, largest * std::pow(1 + 2.0 * CellTuning::Bricks::halo / side, 3));
   const double kept = PerItem::kept_tet * coarse + PerItem::kept_face * faces;
-  const double making = PerItem::lattice_tet * grown + PerItem::tet * largest;
-  BrickEstimate estimate;
-  estimate.memory =
-      std::max({PerItem::program + label_memory(labels).before, field + (scratch ? 0 : kept) + making,
-                field + PerItem::coarse_tet * coarse + PerItem::face * faces});
-  estimate.scratch = PerItem::filed_tet * coarse + PerItem::filed_face * faces;
-  return estimate;
+  Needs needs{};
+  needs.base = field_ + border_bytes_per_area * cuts + (scratch_ ? 0 : kept);
+  needs.alone = PerItem::lattice_tet_of_all * grown + PerItem::tet * largest;
+  needs.each = std::max(PerItem::lattice_tet * grown, PerItem::tet * largest);
+  needs.rest = std::max(before_, field_ + PerItem::coarse_tet * coarse + PerItem::face * faces);
+  if (largest > max_tets || coarse > max_tets) needs.rest = std::numeric_limits<double>::infinity();
+  needs.scratch = PerItem::filed_tet * coarse + PerItem::filed_face * faces;
+  return needs;
 }
 
-int largest_bricks(const LabelInput& labels, const MesherOptions& options, double dense, std::size_t target,
-                   bool scratch, double available) {
-  int side = max_brick_cells;
-  while (side > min_brick_cells &&
-         estimate_bricks(labels, options, dense, side, target, scratch).memory > available)
-    side /= 2;
-  return side;
+BrickEstimate BrickEstimator::operator()(const BrickPlan& plan) const {
+  const Needs of = needs(plan.cells);
+  const bool alone = plan.workers == 1 && thread_count() > 1;
+  return {std::max(of.rest, of.base + (alone ? of.alone : plan.workers * of.each)), of.scratch};
+}
+
+BrickPlan BrickEstimator::with_workers(int cells, double available) const {
+  const Needs of = needs(cells);
+  const double possible = std::floor((available - of.base) / of.each);
+  return {cells, static_cast<unsigned>(std::clamp(possible, 1.0, static_cast<double>(thread_count())))};
+}
+
+BrickPlan BrickEstimator::choose(double available) const {
+  BrickPlan best, least;
+  double least_memory = std::numeric_limits<double>::infinity();
+  for (int side = max_chosen_cells; side >= min_brick_cells; side /= 2) {
+    const BrickPlan plan = with_workers(side, available);
+    const double memory = (*this)(plan).memory;
+    if (memory <= available && (best.cells == 0 || plan.workers > best.workers)) best = plan;
+    if (best.cells > 0 && best.workers == thread_count()) return best;
+    if (least.cells == 0 || memory < least_memory) {
+      least = plan;
+      least_memory = memory;
+    }
+  }
+  return best.cells > 0 ? best : least;
 }
 
 }  // namespace tetwright

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 #include "tetwright/mesher.h"
@@ -8,23 +9,52 @@
 
 namespace tetwright {
 
-/// The memory and space that a job in bricks needs, bytes.
+/// A job in bricks.
+struct BrickPlan {
+  int cells = 0;         ///< edge of a brick, finest cells before any are halved
+  unsigned workers = 1;  ///< bricks made at the same time, each by one thread; 1: one by all threads
+};
+
+/// The memory and space that a job in bricks needs, bytes. Infinite if it has more tets in one mesh than can
+/// be numbered.
 struct BrickEstimate {
   double memory = 0;   ///< peak, including the program and its libraries
   double scratch = 0;  ///< for the files of all bricks
 };
 
-/// Estimates a job in bricks: mostly within 25 %. Parallel.
-/// \param dense tets of the dense mesh
-/// \param side edge of a brick, finest cells before any are halved
-/// \param target final tets
-/// \param scratch whether finished bricks are in files
-BrickEstimate estimate_bricks(const LabelInput& labels, const MesherOptions& options, double dense, int side,
-                              std::size_t target, bool scratch);
+/// Estimates jobs in bricks of a volume: mostly within 25 %.
+class BrickEstimator {
+ public:
+  /// \param dense tets of the dense mesh
+  /// \param target final tets
+  /// \param scratch whether finished bricks are in files
+  BrickEstimator(const LabelInput& labels, const MesherOptions& options, double dense, std::size_t target,
+                 bool scratch);
+  /// Passes over all voxels. Parallel.
+  BrickEstimate operator()(const BrickPlan& plan) const;
+  /// The plan for given bricks with as many workers as memory and threads allow.
+  /// \param available bytes
+  BrickPlan with_workers(int cells, double available) const;
+  /// The largest bricks, and the most workers, for which the memory suffices; if it never does, those that
+  /// need the least. \param available bytes
+  BrickPlan choose(double available) const;
 
-/// The largest bricks for which the memory suffices, or the smallest ones.
-/// \param available bytes
-int largest_bricks(const LabelInput& labels, const MesherOptions& options, double dense, std::size_t target,
-                   bool scratch, double available);
+ private:
+  struct Needs {
+    double rest;   ///< before and after the bricks are made
+    double base;   ///< beside the workers
+    double each;   ///< of a worker with one thread
+    double alone;  ///< of one worker with all threads
+    double scratch;
+  };
+  Needs needs(int cells) const;
+
+  const LabelInput& labels_;
+  double cell_, dense_, target_, field_, before_;
+  bool scratch_;
+};
+
+/// Voxels along each axis of a brick.
+std::array<double, 3> voxels_of_bricks(const LabelInput& labels, double cell, int cells);
 
 }  // namespace tetwright

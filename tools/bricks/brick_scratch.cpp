@@ -5,7 +5,9 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <bit>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -13,6 +15,7 @@
 #include "common/message_text.h"
 #include "tetwright/error.h"
 #include "tetwright/files.h"
+#include "tetwright/prepare.h"
 
 namespace tetwright {
 
@@ -21,7 +24,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* job_file = "tetwright-job.json";
+constexpr const char* lock_file = "tetwright.lock";
 constexpr const char* brick_prefix = "brick-";
+constexpr const char* kept = "-kept";
 constexpr const char* brick_suffix = ".tetwright";
 /// Begin and end the names of temporary files of OutputFiles.
 constexpr const char *temporary_prefix = ".tetwright-", *temporary_suffix = ".tmp";
@@ -30,17 +35,24 @@ bool is_brick(const std::string& name) {
   return name.starts_with(brick_prefix) && name.ends_with(brick_suffix);
 }
 
+nlohmann::ordered_json job_in(const std::string& file) {
+  return nlohmann::ordered_json::parse(read_whole_file(file), nullptr, false);
+}
+
 /// Checks that a job of a folder is this one.
 void check_job(const fs::path& path, const nlohmann::ordered_json& job) {
   const std::string file = path.string();
-  const auto there = nlohmann::ordered_json::parse(read_whole_file(file), nullptr, false);
+  const auto there = job_in(file);
   const std::string remedy = "give --scratch another folder, or delete this one";
   if (!there.is_object()) throw UsageError(file + ": this is no description of a job; " + remedy);
   for (const auto& [name, value] : job.items())
     if (const auto found = there.find(name); found == there.end() || *found != value)
-      throw UsageError(file + ": the bricks are those of another job: " + printable(name) + " is " +
-                       printable(found == there.end() ? "missing" : found->dump()) + ", here " +
-                       printable(value.dump()) + "; " + remedy);
+      throw UsageError(
+          file + ": the bricks are those of another job: " + printable(name) + " is " +
+          printable(found == there.end() ? "missing" : found->dump()) + ", here " + printable(value.dump()) +
+          "; " +
+          (found != there.end() && name.starts_with("--") ? "give the same to go on with them, or " : "") +
+          remedy);
 }
 
 }  // namespace
@@ -54,26 +66,31 @@ BrickScratch::BrickScratch(std::string folder, const BrickJob& job) : folder_(st
   nlohmann::ordered_json described;
   for (const auto& [name, value] : job) described[name] = value;
   const fs::path path = fs::path(folder_) / job_file;
-  // The folder itself is locked, as files are replaced.
-  lock_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (lock_ < 0) throw OutputError(folder_ + ": " + std::strerror(errno));
+  const std::string lock = (fs::path(folder_) / lock_file).string();
+  lock_ = open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (lock_ < 0) throw OutputError(lock + ": " + std::strerror(errno));
   try {
-    if (flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK)
-      throw UsageError(folder_ +
-                       ": another process works on these bricks; wait until it ends, or give "
-                       "--scratch another folder");
-    // Left by processes that were killed: no other one works here.
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
-      if (const std::string name = entry.path().filename().string();
-          name.starts_with(temporary_prefix) && name.ends_with(temporary_suffix))
-        fs::remove(entry.path(), error);
-    if (fs::exists(path))
+    if (flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+      if (errno == EWOULDBLOCK)
+        throw UsageError(folder_ +
+                         ": another process works on these bricks; wait until it ends, or give "
+                         "--scratch another folder");
+      throw OutputError(lock + ": this file system does not lock files (" + std::strerror(errno) +
+                        "); give --scratch a folder on another one");
+    }
+    if (fs::exists(path)) {
       check_job(path, described);
-    else if (used_bytes() > 0)
+      // Left by processes that were killed: none but the one with the lock writes bricks.
+      for (const fs::directory_entry& entry : fs::directory_iterator(folder_))
+        if (const std::string name = entry.path().filename().string();
+            name.starts_with(temporary_prefix) && name.ends_with(temporary_suffix))
+          fs::remove(entry.path(), error);
+    } else if (used_bytes() > 0) {
       throw UsageError(folder_ + ": there are bricks of an unknown job, without " + job_file +
                        "; give --scratch another folder, or delete this one");
-    else
+    } else {
       write_file_atomically(path.string(), described.dump(1) + "\n");
+    }
   } catch (...) {
     close(lock_);
     throw;
@@ -82,20 +99,23 @@ BrickScratch::BrickScratch(std::string folder, const BrickJob& job) : folder_(st
 
 BrickScratch::~BrickScratch() { close(lock_); }
 
-std::string BrickScratch::file(std::size_t brick) const {
-  return (fs::path(folder_) / (brick_prefix + std::to_string(brick) + brick_suffix)).string();
+std::string BrickScratch::file(std::size_t brick, bool kept_surface) const {
+  const std::string name = brick_prefix + std::to_string(brick) + (kept_surface ? kept : "") + brick_suffix;
+  return (fs::path(folder_) / name).string();
 }
 
-bool BrickScratch::has(std::size_t brick) const {
+bool BrickScratch::has(std::size_t brick, bool kept_surface) const {
   std::error_code error;
-  return fs::exists(file(brick), error);
+  return fs::exists(file(brick, kept_surface), error);
 }
 
-void BrickScratch::write(std::size_t brick, const std::string& bytes) const {
-  write_file_atomically(file(brick), bytes);
+void BrickScratch::write(std::size_t brick, const std::string& bytes, bool kept_surface) const {
+  write_file_atomically(file(brick, kept_surface), bytes);
 }
 
-std::string BrickScratch::read(std::size_t brick) const { return read_whole_file(file(brick)); }
+std::string BrickScratch::read(std::size_t brick, bool kept_surface) const {
+  return read_whole_file(file(brick, kept_surface));
+}
 
 double BrickScratch::free_bytes() const {
   std::error_code error;
@@ -121,10 +141,27 @@ void BrickScratch::remove() const noexcept {
       if (is_brick(entry.path().filename().string())) fs::remove(entry.path(), error);
     // Last: bricks without their job would be those of any job.
     fs::remove(fs::path(folder_) / job_file, error);
+    fs::remove(fs::path(folder_) / lock_file, error);
     fs::remove(folder_, error);
   } catch (const std::exception&) {
     return;
   }
+}
+
+int cells_of_job(const std::string& folder) {
+  const fs::path path = fs::path(folder) / job_file;
+  std::error_code error;
+  if (folder.empty() || !fs::exists(path, error)) return 0;
+  const auto job = job_in(path.string());
+  const auto found = job.is_object() ? job.find(bricks_option) : job.end();
+  if (found == job.end() || !found->is_string()) return 0;
+  const std::string text = *found;
+  int cells = 0;
+  std::from_chars(text.data(), text.data() + text.size(), cells);
+  return cells >= min_brick_cells && cells <= max_brick_cells &&
+                 std::has_single_bit(static_cast<unsigned>(cells))
+             ? cells
+             : 0;
 }
 
 }  // namespace tetwright

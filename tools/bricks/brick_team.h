@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <functional>
 #include <string>
 #include <vector>
 
+#include "tetwright/progress.h"
 #include "tools/bricks/brick_part.h"
 
 namespace tetwright {
@@ -15,11 +17,15 @@ namespace tetwright {
 class BrickTeam {
  public:
   using Make = std::function<BrickPart(const BrickTask&)>;
-  /// Receives a brick's to_bytes().
+  /// Receives a brick's to_bytes(), possibly in another thread of the leader.
   using Receive = std::function<void(std::size_t brick, const std::string& bytes)>;
 
   virtual ~BrickTeam() = default;
   virtual bool is_leader() const = 0;
+  /// Comes before all that follows. Members whose job is not the leader's are told apart by it.
+  /// \param job text that determines the bricks
+  /// \param progress looked at while others are waited for
+  virtual void begin(const std::string& job, const Progress& progress) = 0;
   /// The leader's part: has the bricks made by all members, in this order as far as possible.
   /// \param make makes a brick in this process
   /// \param receive is called for one brick at a time

@@ -22,7 +22,10 @@ int main(int argc, char** argv) {
   const int status = tetwright::run_program(argc, argv, &team);
   // Helpers that failed wait here for the leader, which prints their error.
   constexpr int worst_of_results = 1;
-  if (team.is_leader() && status > worst_of_results) MPI_Abort(MPI_COMM_WORLD, status);
+  if (team.is_leader() && status > worst_of_results) {
+    std::fflush(stdout);
+    MPI_Abort(MPI_COMM_WORLD, status);
+  }
   team.part();
   MPI_Finalize();
   return status;

@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cstdint>
 #include <exception>
+#include <mutex>
 #include <string>
 #include <thread>
 
@@ -22,7 +23,7 @@ namespace {
 
 /// Kinds of messages.
 enum Tag : int {
-  ask,      ///< helper to leader: which brick next?
+  ask,      ///< helper to leader: the hash of its job; which brick next?
   answer,   ///< leader to helper: an Answer
   size,     ///< helper to leader: a Size, followed by the brick's bytes
   bytes,    ///< helper to leader: at most max_message of them
@@ -31,6 +32,7 @@ enum Tag : int {
   leave     ///< leader to helper: the program ends
 };
 
+using Job = std::array<std::int64_t, 1>;     ///< hash
 using Answer = std::array<std::int64_t, 3>;  ///< the members of a BrickTask
 using Size = std::array<std::int64_t, 2>;    ///< brick and number of bytes
 constexpr std::int64_t no_brick = -1;
@@ -130,18 +132,13 @@ class MpiTeam::Service {
       while (left_ > 0 && !failed_) {
         answer_waiting();
         MPI_Status status;
-        if (arrived(MPI_ANY_SOURCE, ask, status)) {
-          MPI_Recv(nullptr, 0, MPI_BYTE, status.MPI_SOURCE, ask, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-          team_.waiting_.push_back(status.MPI_SOURCE);
-        } else if (arrived(MPI_ANY_SOURCE, size, status)) {
+        if (team_.helper_asked()) continue;
+        if (arrived(MPI_ANY_SOURCE, size, status)) {
           const auto [brick, count] = receive_numbers<Size>(status.MPI_SOURCE, size);
           deliver(static_cast<std::size_t>(brick),
                   receive_bytes(static_cast<std::size_t>(count), status.MPI_SOURCE, bytes));
-        } else if (arrived(MPI_ANY_SOURCE, failure, status)) {
-          const auto [code, count] = receive_numbers<Size>(status.MPI_SOURCE, failure);
-          fail_as(status.MPI_SOURCE, static_cast<int>(code),
-                  receive_bytes(static_cast<std::size_t>(count), status.MPI_SOURCE, text));
         } else {
+          team_.progress_->throw_if_stopped();
           std::this_thread::sleep_for(between_looks);
         }
       }
@@ -196,13 +193,35 @@ void MpiTeam::lead(const std::vector<BrickTask>& tasks, const Make& make, const 
   service.rethrow();
 }
 
+void MpiTeam::begin(const std::string& job, const Progress& progress) {
+  progress_ = &progress;
+  job_ = 0;
+  for (const char c : job) job_ = 0x100000001b3 * (job_ ^ static_cast<unsigned char>(c));  // FNV-1
+}
+
+bool MpiTeam::helper_asked() {
+  MPI_Status status;
+  if (arrived(MPI_ANY_SOURCE, failure, status)) {
+    const auto [code, count] = receive_numbers<Size>(status.MPI_SOURCE, failure);
+    fail_as(status.MPI_SOURCE, static_cast<int>(code),
+            receive_bytes(static_cast<std::size_t>(count), status.MPI_SOURCE, text));
+  }
+  if (!arrived(MPI_ANY_SOURCE, ask, status)) return false;
+  const auto [job] = receive_numbers<Job>(status.MPI_SOURCE, ask);
+  if (static_cast<std::uint64_t>(job) != job_)
+    throw UsageError(
+        "rank " + std::to_string(status.MPI_SOURCE) +
+        " has another job than rank 0: other voxels in its file, or, since its memory is another "
+        "one, other cells; give --voxel-size or --resolution");
+  waiting_.push_back(status.MPI_SOURCE);
+  return true;
+}
+
 void MpiTeam::end() {
   for (int left = size_ - 1; left > 0; --left) {
-    if (waiting_.empty()) {
-      MPI_Status status;
-      wait_for(MPI_ANY_SOURCE, ask);
-      MPI_Recv(nullptr, 0, MPI_BYTE, MPI_ANY_SOURCE, ask, MPI_COMM_WORLD, &status);
-      waiting_.push_back(status.MPI_SOURCE);
+    while (waiting_.empty() && !helper_asked()) {
+      progress_->throw_if_stopped();
+      std::this_thread::sleep_for(between_looks);
     }
     send(Answer{no_brick, 0, 0}, waiting_.front(), answer);
     waiting_.pop_front();
@@ -211,7 +230,7 @@ void MpiTeam::end() {
 
 void MpiTeam::help(const Make& make) {
   for (;;) {
-    MPI_Send(nullptr, 0, MPI_BYTE, 0, ask, MPI_COMM_WORLD);
+    send(Job{static_cast<std::int64_t>(job_)}, 0, ask);
     wait_for(0, answer);
     const auto [brick, halo, keep_surface] = receive_numbers<Answer>(0, answer);
     if (brick == no_brick) return;

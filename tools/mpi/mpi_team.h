@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <deque>
-#include <mutex>
+#include <string>
 #include <vector>
 
 #include "tools/bricks/brick_team.h"
@@ -20,6 +21,7 @@ class MpiTeam final : public BrickTeam {
   MpiTeam();
 
   bool is_leader() const override { return rank_ == 0; }
+  void begin(const std::string& job, const Progress& progress) override;
   void lead(const std::vector<BrickTask>& tasks, const Make& make, const Receive& receive) override;
   void end() override;
   void help(const Make& make) override;
@@ -32,8 +34,13 @@ class MpiTeam final : public BrickTeam {
   /// Answers a helper that has asked for a brick.
   void give(int helper, const BrickTask& task) const;
 
+  /// Looks for a helper that asks for a brick, and adds it to waiting_. Throws the error of one that failed.
+  bool helper_asked();
+
   int rank_ = 0, size_ = 1;
-  std::deque<int> waiting_;  ///< helpers that have asked and were not answered yet
+  std::uint64_t job_ = 0;               ///< hash
+  const Progress* progress_ = nullptr;  ///< null before begin()
+  std::deque<int> waiting_;             ///< helpers that have asked and were not answered yet
 };
 
 }  // namespace tetwright

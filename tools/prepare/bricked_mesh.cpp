@@ -1,20 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <thread>
 #include <utility>
 #include <vector>
 
 #include "common/message_text.h"
 #include "mesher/brick_mesher.h"
-#include "mesher/cut/cut_off_surface.h"
 #include "mesher/field_mesher.h"
+#include "mesher/labels/label_faces.h"
 #include "mesher/volume_field.h"
 #include "tetwright/error.h"
 #include "tetwright/prepare_steps.h"
@@ -79,13 +82,14 @@ BrickJob describe(const LabelInput& labels, const MesherOptions& options, int si
   std::string tags;
   for (const LabelMaterial& m : labels.materials) tags += (tags.empty() ? "" : " ") + std::to_string(m.tag);
   return {{"tetwright", TETWRIGHT_VERSION},
+          {"format of bricks", std::to_string(brick_format)},
           {"voxels", numbers({1.0 * labels.size[0], 1.0 * labels.size[1], 1.0 * labels.size[2]})},
           {"origin", numbers({labels.origin[0], labels.origin[1], labels.origin[2]})},
           {"directions",
            numbers({d(0, 0), d(1, 0), d(2, 0), d(0, 1), d(1, 1), d(2, 1), d(0, 2), d(1, 2), d(2, 2)})},
           {"labels", tags},
           {"checksum of the voxels", checksum(labels.regions)},
-          {"--bricks", std::to_string(side)},
+          {bricks_option, std::to_string(side)},
           {"--target-tets", std::to_string(*asked.target.tets)},
           {"cell size", numbers({cell_size(labels, options)})},
           {"--adaptivity", numbers({options.adaptivity})},
@@ -97,21 +101,26 @@ BrickJob describe(const LabelInput& labels, const MesherOptions& options, int si
           {"--seed", std::to_string(asked.seed)}};
 }
 
-/// The bricks of a job, in memory or in files.
+/// The bricks of a job, in memory or in files. Bricks may be kept concurrently.
 class Bricks {
  public:
   Bricks(const std::vector<CellBox>& boxes, const BrickScratch* scratch, BrickReport& report)
-      : boxes_(boxes), scratch_(scratch), parts_(boxes.size()), report_(report) {
+      : boxes_(boxes),
+        scratch_(scratch),
+        parts_(boxes.size()),
+        kept_surface_(boxes.size(), 0),
+        report_(report) {
     report.bricks = boxes.size();
   }
 
   /// The border of a brick if a file has what the task asks for.
   std::optional<BrickBorder> finished(const BrickTask& task) {
-    if (!scratch_ || !scratch_->has(task.brick)) return {};
+    if (!scratch_ || !scratch_->has(task.brick, task.keep_surface)) return {};
     try {
-      BrickPart part = read(task.brick);
-      if (part.border.halo < task.halo || part.kept_surface < task.keep_surface) return {};
+      BrickPart part = read(task.brick, task.keep_surface);
+      if (part.border.halo < task.halo) return {};
       ++report_.resumed;
+      kept_surface_[task.brick] = task.keep_surface;
       return std::move(part.border);
     } catch (const InputError&) {
       return {};  // damaged: it is made again
@@ -120,16 +129,21 @@ class Bricks {
 
   /// Keeps a brick and returns its border.
   BrickBorder keep(std::size_t brick, BrickPart part) {
-    if (scratch_) return keep(brick, to_bytes(part));
+    check(brick, part);
+    kept_surface_[brick] = part.kept_surface;
+    if (scratch_) scratch_->write(brick, to_bytes(part), part.kept_surface);
     BrickBorder border = std::move(part.border);
     part.border = {};
-    parts_[brick] = std::move(part);
+    if (!scratch_) parts_[brick] = std::move(part);
     return border;
   }
+  /// \param bytes to_bytes() of the brick
   BrickBorder keep(std::size_t brick, const std::string& bytes) {
-    if (scratch_) scratch_->write(brick, bytes);
     BrickPart part = brick_part(bytes, "brick " + std::to_string(brick));
     if (!scratch_) return keep(brick, std::move(part));
+    check(brick, part);
+    kept_surface_[brick] = part.kept_surface;
+    scratch_->write(brick, bytes, part.kept_surface);
     return std::move(part.border);
   }
 
@@ -137,7 +151,10 @@ class Bricks {
   GatheredMesh joined(const std::map<MaterialTag, std::string>& names) {
     if (!scratch_) return gather(parts_, names);
     std::vector<BrickPart> parts;
-    for (std::size_t b = 0; b < parts_.size(); ++b) parts.push_back(read(b));
+    for (std::size_t b = 0; b < parts_.size(); ++b) {
+      parts.push_back(read(b, kept_surface_[b] != 0));
+      parts.back().border = {};
+    }
     report_.scratch_bytes = scratch_->used_bytes();
     return gather(parts, names);
   }
@@ -146,35 +163,57 @@ class Bricks {
   void clear() { parts_ = {}; }
 
  private:
-  BrickPart read(std::size_t brick) const {
-    const std::string file = scratch_->file(brick);
-    BrickPart part = brick_part(scratch_->read(brick), file);
+  void check(std::size_t brick, const BrickPart& part) const {
     if (part.border.brick != boxes_[brick])
-      throw InputError(file, 0, "this is another brick; delete the file, and the same call makes it again");
+      throw InputError("brick " + std::to_string(brick), 0, "this is another brick; run the same call again");
+  }
+  BrickPart read(std::size_t brick, bool kept_surface) const {
+    BrickPart part = brick_part(scratch_->read(brick, kept_surface), scratch_->file(brick, kept_surface));
+    check(brick, part);
     return part;
   }
 
   const std::vector<CellBox>& boxes_;
   const BrickScratch* scratch_;  ///< null: in memory
   std::vector<BrickPart> parts_;
+  std::vector<std::uint8_t> kept_surface_;  ///< by brick: BrickPart::kept_surface
   BrickReport& report_;
 };
 
+/// Numbers of faces in each brick, which the time that it takes follows.
+std::vector<std::size_t> work_in(const std::vector<CellBox>& boxes, const BoxFaces& faces) {
+  std::vector<std::size_t> work;
+  const CellBox& first = boxes.front();
+  for (const CellBox& box : boxes) {
+    std::array<std::size_t, 3> at;
+    for (int a = 0; a < 3; ++a)
+      at[a] =
+          std::min(faces.boxes[a] - 1, static_cast<std::size_t>(box.low[a] / (first.high[a] - first.low[a])));
+    work.push_back(faces.counts[(at[2] * faces.boxes[1] + at[1]) * faces.boxes[0] + at[0]]);
+  }
+  return work;
+}
+
 std::string gigabytes(double bytes) {
   std::array<char, 32> text;
-  std::snprintf(text.data(), text.size(), "%.2g GB", bytes / gigabyte);
+  // Two digits, and no exponent.
+  const double value = bytes / gigabyte;
+  std::snprintf(text.data(), text.size(), value < 1 ? "%.2f GB" : value < 10 ? "%.1f GB" : "%.0f GB", value);
   return text.data();
 }
 
 /// Checks that memory and scratch space suffice, and says how much of them is expected to be used.
-void check_space(const LabelInput& labels, const MesherOptions& options, double dense_tets, int side,
-                 const BrickScratch* scratch, const PrepareRun& run) {
-  const BrickEstimate needed =
-      estimate_bricks(labels, options, dense_tets, side, *run.options.target.tets, scratch != nullptr);
-  const std::string what = "bricks of " + std::to_string(side) + " cells";
-  require_memory(
-      needed.memory, what,
-      std::string("give smaller --bricks") + (scratch ? "" : ", or a folder for finished ones by --scratch"));
+void check_space(const BrickEstimator& estimate, const BrickPlan& plan, const BrickScratch* scratch,
+                 const PrepareRun& run) {
+  const BrickEstimate needed = estimate(plan);
+  const std::string what = "bricks of " + std::to_string(plan.cells) + " cells";
+  if (std::isinf(needed.memory))
+    throw OutputError("the mesh from " + what +
+                      " would have more than 2^30 tets; give fewer by --target-tets" +
+                      std::string(plan.cells > min_brick_cells ? ", or smaller --bricks" : ""));
+  require_memory(needed.memory, what,
+                 std::string("give other --bricks, larger cells or fewer tets") +
+                     (scratch ? "" : ", or a folder for finished bricks by --scratch"));
   run.progress.announce(
       what + " need about " + gigabytes(needed.memory) + " of memory" +
       (scratch ? " and " + gigabytes(needed.scratch) + " in " + run.options.bricks.scratch : ""));
@@ -186,6 +225,24 @@ void check_space(const LabelInput& labels, const MesherOptions& options, double 
                       "; free some, or give --scratch another folder");
 }
 
+/// Makes bricks, `workers` of them at the same time.
+/// \param keep is called by one thread at a time
+template <class Make, class Keep>
+void make_alone(const std::vector<BrickTask>& tasks, unsigned workers, const Make& make, const Keep& keep) {
+  if (workers == 1) {
+    for (const BrickTask& task : tasks) keep(task.brick, make(task));
+    return;
+  }
+  const ThreadLimit limit(workers);
+  std::mutex mutex;
+  parallel_chunks(tasks.size(), [&](std::size_t i, unsigned) {
+    const ThreadLimit one(1);
+    BrickPart part = make(tasks[i]);
+    const std::lock_guard guard(mutex);
+    keep(tasks[i].brick, std::move(part));
+  });
+}
+
 }  // namespace
 
 void remove_bricks(Prepared& result) noexcept {
@@ -193,20 +250,30 @@ void remove_bricks(Prepared& result) noexcept {
   result.scratch.reset();
 }
 
-DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double dense_tets, int side,
-                      PrepareRun& run) {
+DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double dense_tets,
+                      const BrickPlan& plan, PrepareRun& run) {
   DenseMesh made;
   MesherReport& report = made.report;
   BrickReport& bricks = run.report.bricks.emplace();
-  bricks.cells = side;
-  const bool leads = !run.options.bricks.team || run.options.bricks.team->is_leader();
+  bricks.cells = plan.cells;
+  BrickTeam* const team = run.options.bricks.team;
+  const bool leads = !team || team->is_leader();
+  const BrickJob job = describe(labels, options, plan.cells, run);
   if (!run.options.bricks.scratch.empty() && leads)
-    run.scratch =
-        std::make_shared<BrickScratch>(run.options.bricks.scratch, describe(labels, options, side, run));
-  if (leads) check_space(labels, options, dense_tets, side, run.scratch.get(), run);
+    run.scratch = std::make_shared<BrickScratch>(run.options.bricks.scratch, job);
+  if (leads)
+    check_space(BrickEstimator(labels, options, dense_tets, *run.options.target.tets, run.scratch != nullptr),
+                plan, run.scratch.get(), run);
+  if (team) {
+    std::string text;
+    for (const auto& [name, value] : job) text += name + '=' + value + '\n';
+    team->begin(text, run.progress);
+  }
   Stages stages(&run.progress);
   stages.begin("signed distances");
   VolumeField volume = make_volume_field(labels, options, report, &run.progress);
+  const BoxFaces faces =
+      faces_of_boxes(labels, voxels_of_bricks(labels, cell_size(labels, options), plan.cells));
   labels.regions = {};  // the field has what is needed of them
   report.seconds_sdf = stages.seconds();
   report.loops_sdf = stages.loops();
@@ -214,7 +281,8 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double de
   made.field = mesher.field();
 
   stages.begin("bricks");
-  const std::vector<CellBox> boxes = mesher.bricks(side << report.refinement);
+  const std::vector<CellBox> boxes = mesher.bricks(plan.cells << report.refinement);
+  const std::vector<std::size_t> work = work_in(boxes, faces);
   const double density =
       static_cast<double>(*run.options.target.tets) / meshed_volume(labels, options.keep_outside);
   const CoarsenOptions coarsening = coarsen_options(run.options, run.report.inputs.front());
@@ -222,8 +290,7 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double de
     return make_brick_part(mesher, boxes[task.brick], task, density, coarsening, run.options.shapes.bound(),
                            &run.progress);
   };
-  BrickTeam* const team = run.options.bricks.team;
-  if (team && !team->is_leader()) {
+  if (!leads) {
     team->help(make);
     throw HelperFinished();
   }
@@ -236,20 +303,24 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double de
         borders[task.brick] = std::move(*border);
       else
         left.push_back(task);
+    // Largest first: nobody waits long for the last one.
+    std::stable_sort(left.begin(), left.end(),
+                     [&](const BrickTask& a, const BrickTask& b) { return work[a.brick] > work[b.brick]; });
     std::size_t done = tasks.size() - left.size();
-    const auto show = [&] {
-      run.progress.update(static_cast<double>(done) / static_cast<double>(tasks.size()));
+    const auto show = [&, caller = std::this_thread::get_id()] {
+      if (std::this_thread::get_id() == caller)
+        run.progress.update(static_cast<double>(done) / static_cast<double>(tasks.size()));
     };
     show();
-    const auto keep = [&](std::size_t brick, const auto& part) {
-      borders[brick] = all.keep(brick, part);
+    const auto keep = [&](std::size_t brick, auto part) {
+      borders[brick] = all.keep(brick, std::move(part));
       ++done;
       show();
     };
     if (team)
       team->lead(left, make, keep);
     else
-      for (const BrickTask& task : left) keep(task.brick, make(task));
+      make_alone(left, plan.workers, make, keep);
   };
   bricks.repeated = make_bricks(mesher, boxes, borders, [&](const std::vector<BrickOrder>& orders) {
     std::vector<BrickTask> tasks;

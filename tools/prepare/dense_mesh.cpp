@@ -11,6 +11,7 @@
 #include "tetwright/error.h"
 #include "tetwright/resources.h"
 #include "tools/bricks/brick_estimate.h"
+#include "tools/bricks/brick_scratch.h"
 #include "tools/prepare/edge_sizes_input.h"
 #include "tools/prepare/expected_time.h"
 #include "tools/prepare/gap_opening.h"
@@ -36,14 +37,17 @@ MesherOptions common_options(const PrepareRun& run) {
   return options;
 }
 
+/// Tets of a mesh to simplify, 2^30, with a margin for estimates.
+constexpr double max_tets_to_simplify = 0.8 * (1 << 30);
+
 /// Most estimates of memory are within this factor.
 constexpr double estimate_margin = 1.25;
 
 /// How an input can be meshed with cells of some size.
 struct Need {
   MesherEstimate whole;
-  double bytes = 0;     ///< memory, in bricks if there are any
-  int brick_cells = 0;  ///< edge of the bricks; 0: none
+  double bytes = 0;  ///< memory, in bricks if there are any
+  BrickPlan bricks;  ///< without cells: none
 };
 
 /// Enlarges cells whose size was not requested until the memory that they need is available.
@@ -101,7 +105,7 @@ DenseMesh mesh_input(const MesherInput& surfaces, PrepareRun& run) {
     choose_cells_for_sizes(surfaces, sizes.target_length.get(), sizes.limits.max_edge, options);
   const auto need = [&](const MesherOptions& of) {
     const MesherEstimate whole = estimate_mesh(surfaces, of);
-    return Need{whole, static_cast<double>(whole.bytes), 0};
+    return Need{whole, static_cast<double>(whole.bytes), {}};
   };
   if (choose) fit_memory(surfaces, need, options, run);
   if (!target.tolerance) {
@@ -128,21 +132,23 @@ Box3 box_of(const LabelInput& labels) {
 /// How a volume is meshed: whole if it fits, otherwise in the largest bricks that fit.
 Need need_of(const LabelInput& labels, const MesherOptions& options, const PrepareRun& run) {
   const BrickOptions& asked = run.options.bricks;
-  Need need{estimate_mesh(labels, options), 0, 0};
+  Need need{estimate_mesh(labels, options), 0, {}};
   need.bytes = static_cast<double>(need.whole.bytes);
-  const bool always = asked.use == BrickOptions::Use::always;
+  // A folder with bricks of an earlier call decides.
+  const int before = asked.use == BrickOptions::Use::automatic ? cells_of_job(asked.scratch) : 0;
+  const int cells = asked.use == BrickOptions::Use::always ? asked.cells : before;
   const double available = available_memory() / estimate_margin;
-  if (!always && (asked.use == BrickOptions::Use::never || run.task != Task::prepare ||
-                  conflict_with_bricks(run.options) || need.bytes <= available))
+  const bool fits = need.bytes <= available && static_cast<double>(need.whole.tets) <= max_tets_to_simplify;
+  if (cells == 0 && (asked.use == BrickOptions::Use::never || run.task != Task::prepare ||
+                     conflict_with_bricks(run.options) || fits))
     return need;
-  const auto dense = static_cast<double>(need.whole.tets);
-  const std::size_t target = *run.options.target.tets;
-  const bool scratch = !asked.scratch.empty();
-  const int side = always ? asked.cells : largest_bricks(labels, options, dense, target, scratch, available);
-  const double bytes = estimate_bricks(labels, options, dense, side, target, scratch).memory;
-  if (always || bytes < need.bytes) {
+  const BrickEstimator estimate(labels, options, static_cast<double>(need.whole.tets),
+                                *run.options.target.tets, !asked.scratch.empty());
+  const BrickPlan plan = cells > 0 ? estimate.with_workers(cells, available) : estimate.choose(available);
+  const double bytes = estimate(plan).memory;
+  if (cells > 0 || bytes < need.bytes) {
     need.bytes = bytes;
-    need.brick_cells = side;
+    need.bricks = plan;
   }
   return need;
 }
@@ -170,13 +176,12 @@ DenseMesh mesh_input(LabelInput& labels, PrepareRun& run) {
     throw UsageError(
         "--tolerance of 'mesh' is for surfaces; for a volume use 'prepare --tolerance', which bounds the "
         "distance from the dense mesh");
-  if (need.brick_cells == 0 && !run.options.bricks.scratch.empty())
+  if (need.bricks.cells == 0 && !run.options.bricks.scratch.empty())
     run.progress.announce(
         "the dense mesh fits in memory, so that --scratch is not used; --bricks CELLS "
         "makes bricks all the same");
-  if (need.brick_cells > 0)
-    return mesh_bricks(std::move(labels), options, static_cast<double>(need.whole.tets), need.brick_cells,
-                       run);
+  if (need.bricks.cells > 0)
+    return mesh_bricks(std::move(labels), options, static_cast<double>(need.whole.tets), need.bricks, run);
   DenseMesh dense = mesh_labels(labels, options, &run.progress);
   if (target.tolerance) run.report.tolerance = tolerance_of(*target.tolerance, diagonal_of(dense.mesh));
   return dense;

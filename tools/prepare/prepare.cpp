@@ -160,7 +160,10 @@ Prepared improve_mesh(Input mesh, const PrepareOptions& options, Progress* progr
 
 namespace {
 
-void check_bricks(const PrepareOptions& options) {
+void check_bricks(Task task, const PrepareOptions& options) {
+  if (task != Task::prepare)
+    throw UsageError("only 'prepare' makes bricks; leave out --bricks for '" + std::string(name_of(task)) +
+                     "'");
   if (const char* const other = conflict_with_bricks(options))
     throw UsageError(std::string("--bricks does not work with ") + other + "; leave out one of them");
   const int cells = options.bricks.cells;
@@ -200,7 +203,7 @@ void check_options(Task task, const PrepareOptions& options) {
   }
   if (target.tolerance && options.schedule.kind == Schedule::paper)
     throw UsageError("--schedule paper does not bound distances; leave out --tolerance, or --schedule");
-  if (options.bricks.use == BrickOptions::Use::always) check_bricks(options);
+  if (options.bricks.use == BrickOptions::Use::always) check_bricks(task, options);
   if (options.bricks.use == BrickOptions::Use::never && !options.bricks.scratch.empty())
     throw UsageError("--scratch is for bricks; leave it out, or --bricks off");
   if (options.order != 1 && options.order != 2) throw UsageError("the order of elements must be 1 or 2");

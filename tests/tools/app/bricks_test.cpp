@@ -121,13 +121,19 @@ class Bricks : public testing::Test {
     process.send(SIGKILL);
     return process.wait() == 1000 + SIGKILL;
   }
-  /// Runs the job until a brick is finished and kills it then. On a busy machine it may end before, without
-  /// leaving anything, and is run again.
-  void kill_after(std::size_t last) const {
+  /// The finished bricks.
+  std::vector<std::size_t> finished() const {
+    std::vector<std::size_t> all;
+    for (std::size_t b = 0; b < brick_count; ++b)
+      if (std::filesystem::exists(brick(b))) all.push_back(b);
+    return all;
+  }
+  /// Runs the job until so many bricks are finished and kills it then. On a busy machine it may end before,
+  /// without leaving anything, and is run again.
+  void kill_after(std::size_t count) const {
+    const auto enough = [&] { return finished().size() >= count; };
     for (int attempt = 0; attempt < 20; ++attempt) {
-      if (kill_when([&] { return std::filesystem::exists(brick(last)); }) &&
-          std::filesystem::exists(brick(last)))
-        return;
+      if (kill_when(enough) && enough()) return;
       std::filesystem::remove(path("killed.vtu"));
     }
     FAIL() << "never killed in time: " << contents(path("err"));
@@ -163,8 +169,8 @@ TEST_F(Bricks, GiveTheSameBytesByAnyMeans) {
 
 TEST_F(Bricks, AKilledRunGoesOn) {
   const std::string mesh = expected();
-  for (std::size_t b = 0; b < brick_count; ++b) {
-    kill_after(b);
+  for (std::size_t count = 1; count <= brick_count; ++count) {
+    kill_after(count);
     ASSERT_TRUE(std::filesystem::exists(scratch("tetwright-job.json")));
     EXPECT_FALSE(std::filesystem::exists(path("killed.vtu")));
   }
@@ -185,8 +191,7 @@ TEST_F(Bricks, ARunKilledAtAnyMomentGoesOn) {
 
 TEST_F(Bricks, DamagedAndLostBricksAreMadeAgain) {
   const std::string mesh = expected();
-  ASSERT_NO_FATAL_FAILURE(kill_after(brick_count - 1));
-  ASSERT_TRUE(std::filesystem::exists(brick(0)));
+  ASSERT_NO_FATAL_FAILURE(kill_after(brick_count));
   const std::string whole = contents(brick(1)), other = contents(brick(0));
   std::string flipped = whole;
   flipped[flipped.size() / 2] ^= 1;
@@ -196,10 +201,10 @@ TEST_F(Bricks, DamagedAndLostBricksAreMadeAgain) {
   std::filesystem::remove(brick(2));
   put(scratch(".tetwright-0-0.tmp"), "half a brick");
   EXPECT_EQ(expect_resumed(mesh), 0u);
-  ASSERT_NO_FATAL_FAILURE(kill_after(1));
-  put(brick(1), "");
-  std::filesystem::remove(brick(2));  // may have been finished, too
-  EXPECT_EQ(expect_resumed(mesh), 1u);
+  ASSERT_NO_FATAL_FAILURE(kill_after(2));
+  const std::vector<std::size_t> left = finished();
+  put(brick(left.front()), "");
+  EXPECT_EQ(expect_resumed(mesh), left.size() - 1);
 }
 
 TEST_F(Bricks, ForeignFilesOfTheFolderStay) {
@@ -212,14 +217,15 @@ TEST_F(Bricks, ForeignFilesOfTheFolderStay) {
 }
 
 TEST_F(Bricks, TheFolderOfAnotherJobIsRefused) {
-  ASSERT_NO_FATAL_FAILURE(kill_after(0));
-  const std::string finished = contents(brick(0));
+  ASSERT_NO_FATAL_FAILURE(kill_after(1));
+  const std::size_t first = finished().front();
+  const std::string before = contents(brick(first));
   const std::string call = line(words_with_scratch("a.vtu")) + " --quiet";
   write_label_volume(make_volume({72, 6, 6}, [](int x, int, int) { return x < 41 ? 1 : 2; }),
                      path("other.nrrd"));
-  const auto replaced = [&](const std::string& before, const std::string& after) {
+  const auto replaced = [&](const std::string& word, const std::string& by) {
     std::string other = call;
-    return other.replace(other.find(before), before.size(), after);
+    return other.replace(other.find(word), word.size(), by);
   };
   expect_refused(replaced("--target-tets 1000", "--target-tets 1001"), 2,
                  {"scratch", "another job", "--target-tets", "1001"});
@@ -229,7 +235,7 @@ TEST_F(Bricks, TheFolderOfAnotherJobIsRefused) {
   expect_refused(call + " --min-voxels 200", 2, {"scratch", "another job"});  // merges labels
   put(scratch("tetwright-job.json"), "{");
   expect_refused(call, 2, {"tetwright-job.json", "no description of a job"});
-  EXPECT_EQ(contents(brick(0)), finished);
+  EXPECT_EQ(contents(brick(first)), before);
   EXPECT_FALSE(std::filesystem::exists(path("a.vtu")));
 }
 
@@ -251,17 +257,30 @@ TEST_F(Bricks, AFolderInUseIsRefused) {
 
 TEST_F(Bricks, AFullDiskIsStatusFiveAndFinishedBricksStay) {
   const std::string mesh = expected();
-  ASSERT_NO_FATAL_FAILURE(kill_after(brick_count - 1));
-  const auto size = [&](std::size_t b) { return std::filesystem::file_size(brick(b)); };
-  ASSERT_GT(size(1), size(0) + 4000);  // the second brick has more labels
+  ASSERT_NO_FATAL_FAILURE(kill_after(brick_count));
+  std::uintmax_t smallest = std::filesystem::file_size(brick(1));
+  for (const std::size_t b : {1, 2}) {
+    smallest = std::min(smallest, std::filesystem::file_size(brick(b)));
+    std::filesystem::remove(brick(b));
+  }
   // A limit on the size of files acts like a full disk. The shell's unit is 512 bytes.
-  const std::string blocks = std::to_string((size(0) + size(1)) / 2 / 512);
-  std::filesystem::remove_all(path("scratch"));
-  const std::string call = line(words_with_scratch("a.vtu")) + " --quiet";
-  expect_refused(call, 5, {"brick-1.tetwright"}, "ulimit -f " + blocks + ";");
-  EXPECT_TRUE(std::filesystem::exists(brick(0)));
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path("scratch")), {}), 2);
+  std::string call = line(words_with_scratch("a.vtu")) + " --quiet";
+  const std::string statistics = "--stats " + path("s.json");  // would not fit either
+  call.erase(call.find(statistics), statistics.size());
+  expect_refused(call, 5, {"brick-"}, "ulimit -f " + std::to_string(smallest / 2 / 512) + ";");
+  EXPECT_EQ(finished(), std::vector<std::size_t>{0});
   EXPECT_EQ(expect_resumed(mesh), 1u);
+}
+
+TEST_F(Bricks, AutomaticBricksAreThoseOfTheFolder) {
+  const std::string mesh = expected();
+  ASSERT_NO_FATAL_FAILURE(kill_after(1));
+  std::string call = line(words_with_scratch("a.vtu"));
+  call.replace(call.find("--bricks 32"), 11, "--bricks auto");
+  const Answer a = run(call);
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_GE(bricks().at("resumed"), 1);
+  EXPECT_TRUE(contents(path("a.vtu")) == mesh);
 }
 
 TEST_F(Bricks, WrongCallsAreStatusTwo) {
@@ -401,6 +420,27 @@ TEST(ThinLabels, KeepTheirComponentsAcrossTheCut) {
     constexpr std::array<MaterialTag, 10> rows{1, 1, 0, 1, 1, 2, 3, 3, 0, 4};
     return rows[static_cast<std::size_t>(y)];
   }));
+}
+
+// A gap of a voxel that winds around the plane between bricks: both boundaries are moved by more than that.
+TEST(BricksThatMeet, AreMadeAgainWithTheirBoundary) {
+  const TemporaryFolder folder;
+  const auto gap = [](int x, int y, int z) {
+    const double at = 32 + 6 * std::sin(y / 5.0) * std::cos(z / 6.0);
+    if (std::min({x, y, z}) < 4 || std::max({y, z}) > 43 || x > 59) return 0;
+    return x < at - 0.5 ? 1 : x > at + 0.5 ? 2 : 0;
+  };
+  write_label_volume(make_volume({64, 48, 48}, gap), folder / "gap.nrrd");
+  const std::string call = "prepare " + (folder / "gap.nrrd") +
+                           " --target-tets 700 --voxel-size 1 --bricks 32 --quiet --threads 1 --stats " +
+                           (folder / "s.json");
+  const Answer made = run(call + " -o " + (folder / "made.vtu"));
+  EXPECT_LE(made.status, 1) << made.err;
+  EXPECT_GE(read_json(folder / "s.json").at("dense").at("bricks").at("surfaces_kept"), 2);
+  EXPECT_EQ(run("check " + (folder / "made.vtu") + " --quiet").status, 0);
+  const Answer again = run(call + " --scratch " + (folder / "scratch") + " -o " + (folder / "again.vtu"));
+  EXPECT_EQ(again.status, made.status);
+  EXPECT_TRUE(contents(folder / "again.vtu") == contents(folder / "made.vtu"));
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ namespace {
 BrickPart small_part() {
   BrickPart part;
   part.border = {{{0, 32, 64}, {32, 64, 80}}, 16, {{{1, 2}, {3, 4}, {5, 6}}, {{7, SeamPoint::not_near}}}};
+  part.kept_surface = true;
   part.mesh.points = {{0.1, -0.0, 1e-300}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1e300}};
   part.mesh.tets = {{0, 1, 2, 3}, {0, 2, 1, 4}};
   part.mesh.materials = {-2147483647 - 1, 2147483647};
@@ -57,6 +58,7 @@ bool same_bits(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
 void expect_equal(const BrickPart& a, const BrickPart& b) {
   EXPECT_EQ(a.border.brick, b.border.brick);
   EXPECT_EQ(a.border.halo, b.border.halo);
+  EXPECT_EQ(a.kept_surface, b.kept_surface);
   EXPECT_EQ(a.border.seam.offered, b.border.seam.offered);
   EXPECT_EQ(a.border.seam.needed, b.border.seam.needed);
   EXPECT_TRUE(same_bits(a.mesh.points, b.mesh.points));

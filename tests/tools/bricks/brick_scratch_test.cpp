@@ -126,7 +126,7 @@ TEST_F(BrickScratchTest, BelongsToOneProcessAtATime) {
 }
 
 TEST_F(BrickScratchTest, RemovesWhatKilledProcessesLeft) {
-  std::filesystem::create_directory(path());
+  { const BrickScratch scratch(path(), job); }
   const std::vector<std::string> foreign{"notes.txt", ".tetwright-notes", "notes.tmp", "brick-1.txt"};
   for (const std::string& name : foreign) put(path(name), name);
   put(path(".tetwright-123-abc.tmp"), "half a brick");
@@ -166,8 +166,8 @@ TEST_F(BrickScratchTest, AFullDiskLeavesTheOtherBricks) {
   EXPECT_EQ(scratch.read(1), "old");
   EXPECT_FALSE(scratch.has(2));
   EXPECT_TRUE(scratch.has(3));
-  // The job's file and three bricks.
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path()), {}), 4);
+  // The job's file, the lock and three bricks.
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path()), {}), 5);
 }
 
 TEST_F(BrickScratchTest, NothingIsLeftAtTheEndExceptForeignFiles) {
@@ -178,6 +178,9 @@ TEST_F(BrickScratchTest, NothingIsLeftAtTheEndExceptForeignFiles) {
     const std::vector<std::string> names{"notes.txt", "brick-1.txt", "my-brick-2.tetwright", "tetwright-job"};
     for (const std::string& name : names)
       if (foreign) put(path(name), name);
+    scratch.write(9, "y", true);
+    EXPECT_EQ(scratch.read(9), "x");
+    EXPECT_EQ(scratch.read(9, true), "y");
     scratch.remove();
     EXPECT_EQ(std::filesystem::exists(path()), foreign);
     if (!foreign) continue;

@@ -21,6 +21,8 @@
 
 namespace tetwright {
 
+struct BrickPlan;
+
 /// Measures the time since its construction, and the part of it in loops, if the thread counts them.
 class Stopwatch {
  public:
@@ -118,12 +120,12 @@ DenseMesh make_dense_mesh(ScanInput input, PrepareRun& run);
 ///
 /// \param options the cells
 /// \param dense_tets estimate for the dense mesh
-/// \param side edge of a brick, finest cells before any are halved
+/// \param plan the bricks
 /// \return the coarsened mesh
 /// \throws Error in the cases of mesh_labels(); OutputError if memory or scratch space would not suffice
 /// \throws HelperFinished in a member of BrickOptions::team that does not lead
-DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double dense_tets, int side,
-                      PrepareRun& run);
+DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double dense_tets,
+                      const BrickPlan& plan, PrepareRun& run);
 
 /// Removes the files of finished bricks, now that the result is safe. Nothing happens without any.
 void remove_bricks(Prepared& result) noexcept;
