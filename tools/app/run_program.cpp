@@ -16,6 +16,7 @@
 
 #include "tetwright/error.h"
 #include "tetwright/files.h"
+#include "tetwright/prepare_steps.h"
 #include "tools/app/command_line.h"
 #include "tools/app/commands/commands.h"
 #include "tools/app/exit_status.h"
@@ -35,13 +36,18 @@ void join(BrickTeam& team, CommandLine& line) {
     throw UsageError(
         "tetwright-mpi makes bricks of segmented volumes: use it with 'prepare' and without "
         "--bricks off, or use tetwright");
+  if (const char* const other = conflict_with_bricks(line.options))
+    throw UsageError(std::string("tetwright-mpi makes bricks, which do not work with ") + other +
+                     "; leave it out, or use tetwright");
   if (bricks.use == BrickOptions::Use::automatic) {
     bricks.use = BrickOptions::Use::always;
     bricks.cells = default_brick_cells;
   }
   bricks.team = &team;
   if (team.is_leader()) return;
-  line.console = {.quiet = true, .progress = ProgressStyle::none};
+  line.console = {};
+  line.console.quiet = true;
+  line.console.progress = ProgressStyle::none;
   line.outputs.stats.clear();
 }
 

@@ -100,19 +100,19 @@ BrickPlan BrickEstimator::with_workers(int cells, double available) const {
 }
 
 BrickPlan BrickEstimator::choose(double available) const {
-  BrickPlan best, least;
-  double least_memory = std::numeric_limits<double>::infinity();
+  BrickPlan best, smallest;
+  double min_memory = std::numeric_limits<double>::infinity();
   for (int side = max_chosen_cells; side >= min_brick_cells; side /= 2) {
     const BrickPlan plan = with_workers(side, available);
     const double memory = (*this)(plan).memory;
     if (memory <= available && (best.cells == 0 || plan.workers > best.workers)) best = plan;
     if (best.cells > 0 && best.workers == thread_count()) return best;
-    if (least.cells == 0 || memory < least_memory) {
-      least = plan;
-      least_memory = memory;
+    if (smallest.cells == 0 || memory < min_memory) {
+      smallest = plan;
+      min_memory = memory;
     }
   }
-  return best.cells > 0 ? best : least;
+  return best.cells > 0 ? best : smallest;
 }
 
 }  // namespace tetwright

@@ -45,14 +45,16 @@ void check_job(const fs::path& path, const nlohmann::ordered_json& job) {
   const auto there = job_in(file);
   const std::string remedy = "give --scratch another folder, or delete this one";
   if (!there.is_object()) throw UsageError(file + ": this is no description of a job; " + remedy);
-  for (const auto& [name, value] : job.items())
-    if (const auto found = there.find(name); found == there.end() || *found != value)
-      throw UsageError(
-          file + ": the bricks are those of another job: " + printable(name) + " is " +
-          printable(found == there.end() ? "missing" : found->dump()) + ", here " + printable(value.dump()) +
-          "; " +
-          (found != there.end() && name.starts_with("--") ? "give the same to go on with them, or " : "") +
-          remedy);
+  for (const auto& [name, value] : job.items()) {
+    const auto found = there.find(name);
+    const bool missing = found == there.end();
+    if (!missing && *found == value) continue;
+    std::string message = file + ": the bricks are those of another job: ";
+    message += printable(name) + " is " + printable(missing ? "missing" : found->dump());
+    message += ", here " + printable(value.dump()) + "; ";
+    if (!missing && name.starts_with("--")) message += "give the same to go on with them, or ";
+    throw UsageError(message + remedy);
+  }
 }
 
 }  // namespace

@@ -105,6 +105,7 @@ void drop_unused_points(TetMesh& surface) {
 /// Joins the surfaces of the dense meshes.
 TetMesh joined_surface(const std::vector<BrickPart>& parts) {
   std::vector<PiecePoints> pieces;
+  pieces.reserve(parts.size());
   for (const BrickPart& part : parts) pieces.push_back({part.surface.points, part.surface_shared});
   const JoinedPoints points = join_points(pieces);
   TetMesh all;

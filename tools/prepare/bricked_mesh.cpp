@@ -266,7 +266,7 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double de
                 plan, run.scratch.get(), run);
   if (team) {
     std::string text;
-    for (const auto& [name, value] : job) text += name + '=' + value + '\n';
+    for (const auto& [name, value] : job) text.append(name).append("=").append(value).append("\n");
     team->begin(text, run.progress);
   }
   Stages stages(&run.progress);
@@ -324,6 +324,7 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double de
   };
   bricks.repeated = make_bricks(mesher, boxes, borders, [&](const std::vector<BrickOrder>& orders) {
     std::vector<BrickTask> tasks;
+    tasks.reserve(orders.size());
     for (const BrickOrder& order : orders) tasks.push_back({order.brick, order.halo, false});
     make_all(tasks);
   });
