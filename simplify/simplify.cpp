@@ -248,6 +248,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     in_time = done_in_time([&] {
       const EarlierDeadline closing_has_time(progress, tuned ? TimeLimit::loop_share : 1);
       engine.recorder().begin_stage("simplify");
+      if (tuned && options.original) even_out_parts(engine, target, options.max_iterations);
       if (tuned)
         run_tuned_schedule(engine, options, target);
       else

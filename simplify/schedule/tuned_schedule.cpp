@@ -21,6 +21,7 @@ namespace tetwright {
 namespace {
 
 using Closing = SimplifyTuning::Closing;
+using Coarsening = SimplifyTuning::Coarsening;
 using Merging = MergingTuning;
 using Schedules = SimplifyTuning::Schedules;
 using Tolerance = SimplifyTuning::Tolerance;
@@ -188,6 +189,26 @@ void run_collapses(Engine& engine, double final_target, std::size_t loop_target,
     const double removed = 1 - static_cast<double>(mesh.live_tets()) / before;
     if (removed < TunedLoop::min_removed && percent >= 100) break;
     percent = std::min(100.0, percent + Schedules::percent_step);
+  }
+  rules.acceptance.worse_probability = 0;
+}
+
+void even_out_parts(Engine& engine, std::size_t target, int max_iterations) {
+  const EditableMesh& mesh = engine.mesh();
+  BlockRules& rules = engine.rules;
+  begin_loop(rules);
+  rules.count.min = target;
+  rules.acceptance.worse_probability = Schedules::first_annealing;
+  engine.rate_all();
+  double removed = 1;
+  for (int i = 0; i < max_iterations && removed >= Coarsening::evened_out; ++i) {
+    engine.compact_if_sparse();
+    RoundRecorder::Round round(engine.recorder(), "simplify", *rules.error.max);
+    const auto before = static_cast<double>(mesh.live_tets());
+    round.report().cutoff = portable_cbrt(Coarsening::cut_quality);
+    collapse_block(engine, Coarsening::cut_quality, target);
+    round.finish();
+    removed = 1 - static_cast<double>(mesh.live_tets()) / before;
   }
   rules.acceptance.worse_probability = 0;
 }

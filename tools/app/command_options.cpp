@@ -193,8 +193,12 @@ void add_bricks(CLI::App& app, CommandLine& c) {
          "Equal numbers give equal bytes")
       ->type_name("CELLS|auto|off")
       ->default_str("auto");
-  app.add_option(
-         "--scratch", c.options.bricks.scratch,
+  app.add_option_function<std::string>(
+         "--scratch",
+         [&c](const std::string& folder) {
+           if (folder.empty()) throw CLI::ValidationError("--scratch", "the name of the folder is empty");
+           c.options.bricks.scratch = folder;
+         },
          "Folder for finished bricks, which then need no memory: if the run is stopped, the same call "
          "goes on from them. They are removed once the mesh is written")
       ->type_name("DIR");

@@ -4,6 +4,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -36,6 +37,8 @@ void join(BrickTeam& team, CommandLine& line) {
     throw UsageError(
         "tetwright-mpi makes bricks of segmented volumes: use it with 'prepare' and without "
         "--bricks off, or use tetwright");
+  if (std::find(line.inputs.begin(), line.inputs.end(), standard_input) != line.inputs.end())
+    throw UsageError("tetwright-mpi cannot read standard input, which only rank 0 has; give a file");
   if (const char* const other = conflict_with_bricks(line.options))
     throw UsageError(std::string("tetwright-mpi makes bricks, which do not work with ") + other +
                      "; leave it out, or use tetwright");

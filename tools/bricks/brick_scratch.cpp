@@ -144,7 +144,7 @@ void BrickScratch::remove() const noexcept {
     // Last: bricks without their job would be those of any job.
     fs::remove(fs::path(folder_) / job_file, error);
     fs::remove(fs::path(folder_) / lock_file, error);
-    fs::remove(folder_, error);
+    fs::remove(fs::canonical(folder_), error);  // not a link to it
   } catch (const std::exception&) {
     return;
   }

@@ -211,8 +211,8 @@ bool MpiTeam::helper_asked() {
   if (static_cast<std::uint64_t>(job) != job_)
     throw UsageError(
         "rank " + std::to_string(status.MPI_SOURCE) +
-        " has another job than rank 0: other voxels in its file, or, since its memory is another "
-        "one, other cells; give --voxel-size or --resolution");
+        " has another job than rank 0: other options, other voxels in its file or, since its memory is "
+        "another one, other cells; give all ranks the same, and --voxel-size");
   waiting_.push_back(status.MPI_SOURCE);
   return true;
 }
@@ -229,6 +229,7 @@ void MpiTeam::end() {
 }
 
 void MpiTeam::help(const Make& make) {
+  has_news_ = false;
   for (;;) {
     send(Job{static_cast<std::int64_t>(job_)}, 0, ask);
     wait_for(0, answer);
@@ -242,6 +243,7 @@ void MpiTeam::help(const Make& make) {
 }
 
 void MpiTeam::report(int status, const std::string& message) {
+  has_news_ = false;
   send(Size{status, static_cast<std::int64_t>(message.size())}, 0, failure);
   send_bytes(message, 0, text);
 }
@@ -251,6 +253,9 @@ void MpiTeam::part() {
     for (int helper = 1; helper < size_; ++helper)
       MPI_Send(nullptr, 0, MPI_BYTE, helper, leave, MPI_COMM_WORLD);
   } else {
+    if (has_news_)
+      report(static_cast<int>(ExitStatus::usage),
+             "it ended without making bricks; give all ranks the same call");
     wait_for(0, leave);
     MPI_Recv(nullptr, 0, MPI_BYTE, 0, leave, MPI_COMM_WORLD, MPI_STATUS_IGNORE);
   }

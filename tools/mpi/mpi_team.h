@@ -38,6 +38,7 @@ class MpiTeam final : public BrickTeam {
   bool helper_asked();
 
   int rank_ = 0, size_ = 1;
+  bool has_news_ = true;  ///< of a helper: it has neither helped nor reported, and the leader may wait for it
   std::uint64_t job_ = 0;               ///< hash
   const Progress* progress_ = nullptr;  ///< null before begin()
   std::deque<int> waiting_;             ///< helpers that have asked and were not answered yet
