@@ -36,8 +36,6 @@ struct PerItem {
 constexpr double faces_per_tet = 0.1, cut_faces_per_area = 0.6;
 /// Bytes of the borders of bricks for each squared cell of a cut: they are compared once all bricks are made.
 constexpr double border_bytes_per_area = 100;
-/// Max number of tets of a mesh to simplify, 2^30, with a margin for estimates.
-constexpr double max_tets = 0.8 * (1 << 30);
 /// Larger bricks gain little: cells around them are 20 % of these.
 constexpr int max_chosen_cells = 256;
 /// Tets after coarsening for each final one, and for each face of a cut and side (coarsen()).
@@ -82,7 +80,8 @@ BrickEstimator::Needs BrickEstimator::needs(int side) const {
   needs.alone = PerItem::lattice_tet_of_all * grown + PerItem::tet * largest;
   needs.each = std::max(PerItem::lattice_tet * grown, PerItem::tet * largest);
   needs.rest = std::max(before_, field_ + PerItem::coarse_tet * coarse + PerItem::face * faces);
-  if (largest > max_tets || coarse > max_tets) needs.rest = std::numeric_limits<double>::infinity();
+  if (largest > max_tets_to_simplify || coarse > max_tets_to_simplify)
+    needs.rest = std::numeric_limits<double>::infinity();
   needs.scratch = PerItem::filed_tet * coarse + PerItem::filed_face * faces;
   return needs;
 }
@@ -95,7 +94,7 @@ BrickEstimate BrickEstimator::operator()(const BrickPlan& plan) const {
 
 BrickPlan BrickEstimator::with_workers(int cells, double available) const {
   const Needs of = needs(cells);
-  const double possible = std::floor((available - of.base) / of.each);
+  const double possible = std::floor((available - of.base) / std::max(1.0, of.each));
   return {cells, static_cast<unsigned>(std::clamp(possible, 1.0, static_cast<double>(thread_count())))};
 }
 

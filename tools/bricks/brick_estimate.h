@@ -9,6 +9,9 @@
 
 namespace tetwright {
 
+/// Tets of a mesh to simplify, 2^30, with a margin for estimates.
+inline constexpr double max_tets_to_simplify = 0.8 * (1 << 30);
+
 /// A job in bricks.
 struct BrickPlan {
   int cells = 0;         ///< edge of a brick, finest cells before any are halved
@@ -22,7 +25,8 @@ struct BrickEstimate {
   double scratch = 0;  ///< for the files of all bricks
 };
 
-/// Estimates jobs in bricks of a volume: mostly within 25 %.
+/// Estimates jobs in bricks of a volume. Peaks on foams were between half of the estimate and, where cuts
+/// dominate (64 bricks of 32 cells in a volume of 128^3), 1.9 times as much.
 class BrickEstimator {
  public:
   /// \param dense tets of the dense mesh

@@ -37,9 +37,6 @@ MesherOptions common_options(const PrepareRun& run) {
   return options;
 }
 
-/// Tets of a mesh to simplify, 2^30, with a margin for estimates.
-constexpr double max_tets_to_simplify = 0.8 * (1 << 30);
-
 /// Most estimates of memory are within this factor.
 constexpr double estimate_margin = 1.25;
 
