@@ -225,7 +225,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
   const bool built = done_in_time([&] {
     engine.throw_if_stopped();
     if (!tuned) return;
-    engine.input_samples().keep_surface(options.surface, options.original, options.tolerance > 0);
+    engine.keep_surface(options.surface, options.tolerance > 0);
     engine.throw_if_stopped();
     // From here on the mesh is changed, so time is asked for in the loop only.
     if (!is_bounded(options) && options.tolerance == 0 && !options.original)

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/geometry/projection_tree.h"
 
+#include <utility>
+
 #include "common/geometry/morton.h"
 #include "common/parallel/parallel_sort.h"
 #include "tetwright/resources.h"
@@ -38,9 +40,20 @@ ProjectionTree::ProjectionTree(std::vector<Vec3> points, std::vector<Item> items
   parallel_sort(keys, [](const Key& a, const Key& b) {
     return a.morton != b.morton ? a.morton < b.morton : a.item < b.item;
   });
-  std::vector<Item> sorted(items_.size());
-  for (std::size_t i = 0; i < keys.size(); ++i) sorted[i] = items_[keys[i].item];
-  items_ = std::move(sorted);
+  // Items move along the cycles of the permutation, since a copy of them may take gigabytes.
+  for (std::uint32_t start = 0; start < keys.size(); ++start) {
+    if (keys[start].item == start) continue;
+    const Item first = items_[start];
+    std::uint32_t to = start;
+    while (true) {
+      const std::uint32_t from = std::exchange(keys[to].item, to);
+      if (from == start) break;
+      items_[to] = items_[from];
+      to = from;
+    }
+    items_[to] = first;
+  }
+  keys = {};
 
   tree_ = BoxTree(items_.size(), leaf_items, [&](std::size_t i) {
     Box3 box;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "simplify/tuning/tuning.h"
 #include "tetwright/error.h"
@@ -11,7 +12,7 @@
 
 namespace tetwright {
 
-OriginalSurface surface_of(const EditableMesh& mesh, const OriginalMesh& original) {
+OriginalSurface take_surface(const EditableMesh& mesh, OriginalMesh& original) {
   using Grains = SimplifyTuning::Grains;
   std::map<MaterialTag, RegionId> regions;
   for (std::size_t r = 0; r < mesh.region_count(); ++r)
@@ -22,15 +23,16 @@ OriginalSurface surface_of(const EditableMesh& mesh, const OriginalMesh& origina
       throw UsageError("the mesh has no material " + std::to_string(tag) + ", which its original has");
     return found->second;
   };
-  const TetMesh& from = original.surface;
+  TetMesh from = std::exchange(original.surface, {});
   OriginalSurface surface;
-  surface.points.resize(from.points.size());
-  parallel_for(0, from.points.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; ++p) surface.points[p] = mesh.space().to_working(from.points[p]);
+  surface.points = std::move(from.points);
+  std::vector<Vec3>& points = surface.points;
+  parallel_for(0, points.size(), Grains::slots, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) points[p] = mesh.space().to_working(points[p]);
   });
   surface.faces.reserve(from.interfaces.size());
   for (const InterfaceTriangle& t : from.interfaces) {
-    if (*std::max_element(t.ids.begin(), t.ids.end()) >= from.points.size())
+    if (*std::max_element(t.ids.begin(), t.ids.end()) >= points.size())
       throw UsageError("a triangle of the original refers to a point that does not exist");
     surface.faces.push_back(
         {t.ids, region_of(t.material), t.other ? region_of(*t.other) : outside_id, t.patch});

@@ -14,8 +14,8 @@ struct OriginalSurface {
   std::vector<InterfaceFace> faces;  ///< ids are indices into points
 };
 
-/// Parallel.
+/// Moves the surface out of an original. Parallel.
 /// \throws UsageError if the mesh lacks a material of the original, or a triangle of it a point
-OriginalSurface surface_of(const EditableMesh& mesh, const OriginalMesh& original);
+OriginalSurface take_surface(const EditableMesh& mesh, OriginalMesh& original);
 
 }  // namespace tetwright

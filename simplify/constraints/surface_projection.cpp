@@ -13,6 +13,7 @@ namespace tetwright {
 namespace {
 
 using Grains = SimplifyTuning::Grains;
+using Projection = SimplifyTuning::Projection;
 
 ProjectionTree::Kind kind_of(RegionId first, RegionId second, PatchId patch) {
   return {std::min(first, second), std::max(first, second), patch};
@@ -67,36 +68,48 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, std::span<const V
     PatchId patch;
     bool sheet;
   };
-  std::vector<Edge> edges(3 * faces.size());
-  parallel_for(0, faces.size(), Grains::surface_triangles, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i)
-      for (int k = 0; k < 3; ++k) {
-        const Index p = faces[i].ids[k], q = faces[i].ids[(k + 1) % 3];
-        edges[3 * i + k] = {std::uint64_t{std::min(p, q)} << 32 | std::max(p, q), faces[i].patch,
-                            faces[i].is_sheet()};
-      }
-  });
-  parallel_sort(
-      edges, [](const Edge& x, const Edge& y) { return x.key != y.key ? x.key < y.key : x.patch < y.patch; });
+  // The edges of a range of first points are sorted at a time: all of them would take more memory than the
+  // surface.
+  const auto edges_from = [&](std::size_t low, std::size_t high) {
+    std::vector<Edge> edges = parallel_collect<Edge>(
+        0, faces.size(), Grains::surface_triangles,
+        [&](std::size_t begin, std::size_t end, std::vector<Edge>& out) {
+          for (std::size_t i = begin; i < end; ++i)
+            for (int k = 0; k < 3; ++k) {
+              const auto [p, q] = std::minmax(faces[i].ids[k], faces[i].ids[(k + 1) % 3]);
+              if (p >= low && p < high)
+                out.push_back({std::uint64_t{p} << 32 | q, faces[i].patch, faces[i].is_sheet()});
+            }
+        });
+    parallel_sort(edges, [](const Edge& x, const Edge& y) {
+      return x.key != y.key ? x.key < y.key : x.patch < y.patch;
+    });
+    return edges;
+  };
   PointCopies points(positions);
   std::vector<ProjectionTree::Item> segments;
-  for (std::size_t i = 0; i < edges.size();) {
-    std::size_t j = i + 1;
-    bool sheet = edges[i].sheet;
-    while (j < edges.size() && edges[j].key == edges[i].key) sheet |= edges[j++].sheet;
-    const auto p = static_cast<Index>(edges[i].key >> 32), q = static_cast<Index>(edges[i].key);
-    // A given surface with patches provides its own feature edges, but not those of sheets, nor where it
-    // gives up creases.
-    const auto is_own = [&] {
-      return !given_patches_ || sheet || lacks_creases((positions[p] + positions[q]) / 2);
-    };
-    if ((j - i != 2 || (edges[i].patch != edges[i + 1].patch && is_own())) && complete(p) && complete(q) &&
-        (sheet || !given_has_curve(positions[p], positions[q], j - i != 2))) {
-      const Index a = points.number(p), b = points.number(q);
-      segments.push_back({{a, b, b}, {}});
+  const auto add_curves = [&](const std::vector<Edge>& edges) {
+    for (std::size_t i = 0; i < edges.size();) {
+      std::size_t j = i + 1;
+      bool sheet = edges[i].sheet;
+      while (j < edges.size() && edges[j].key == edges[i].key) sheet |= edges[j++].sheet;
+      const auto p = static_cast<Index>(edges[i].key >> 32), q = static_cast<Index>(edges[i].key);
+      // A given surface with patches provides its own feature edges, but not those of sheets, nor where it
+      // gives up creases.
+      const auto is_own = [&] {
+        return !given_patches_ || sheet || lacks_creases((positions[p] + positions[q]) / 2);
+      };
+      if ((j - i != 2 || (edges[i].patch != edges[i + 1].patch && is_own())) && complete(p) && complete(q) &&
+          (sheet || !given_has_curve(positions[p], positions[q], j - i != 2))) {
+        const Index a = points.number(p), b = points.number(q);
+        segments.push_back({{a, b, b}, {}});
+      }
+      i = j;
     }
-    i = j;
-  }
+  };
+  const std::size_t ranges = 1 + faces.size() / Projection::faces_at_once;
+  for (std::size_t range = 0; range < ranges; ++range)
+    add_curves(edges_from(range * positions.size() / ranges, (range + 1) * positions.size() / ranges));
   // Curves end or branch where the number of segments is not two.
   std::vector<std::uint32_t> degrees(points.points.size(), 0);
   for (const ProjectionTree::Item& s : segments)
@@ -111,7 +124,7 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, std::span<const V
 bool SurfaceProjection::given_has_curve(const Vec3& p, const Vec3& q, bool junction) const {
   if (!given_patches_ || (junction && !given_->has_junctions())) return false;
   const WorkingSpace& space = mesh_->space();
-  const double reach = SimplifyTuning::Projection::same_curve_share * (q - p).norm() / space.scale();
+  const double reach = Projection::same_curve_share * (q - p).norm() / space.scale();
   return given_->onto_crease(space.to_input((p + q) / 2), reach).has_value();
 }
 

@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "simplify/constraints/original_surface.h"
 #include "simplify/tuning/tuning.h"
 #include "tetwright/resources.h"
 
@@ -14,10 +13,10 @@ namespace {
 using Grains = SimplifyTuning::Grains;
 using Slots = SimplifyTuning::Slots;
 
-SurfaceProjection projection_for(const EditableMesh& mesh, const Engine::Options& options) {
-  if (!options.original) return {mesh, options.reference};
-  const OriginalSurface original = surface_of(mesh, *options.original);
-  return {mesh, original.points, original.faces, options.reference, [](Index) { return true; }};
+SurfaceProjection projection_for(const EditableMesh& mesh, const std::optional<OriginalSurface>& original,
+                                 const ReferenceSurface* reference) {
+  if (!original) return {mesh, reference};
+  return {mesh, original->points, original->faces, reference, [](Index) { return true; }};
 }
 
 }  // namespace
@@ -26,7 +25,8 @@ Engine::Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, P
     : constrained_(std::move(mesh), options.name, options.frozen, options.fix_boundary, options.keep_volumes,
                    options.original ? &options.original->volumes : nullptr),
       first_tets_(options.original ? options.original->tets : mesh_.live_tets()),
-      projection_(projection_for(mesh_, options)),
+      original_(options.original ? std::optional(take_surface(mesh_, *options.original)) : std::nullopt),
+      projection_(projection_for(mesh_, original_, options.reference)),
       samples_(constrained_),
       runner_(mesh_, grid_, constrained_.ledger, options.seed, options.batch_size, progress),
       recorder_(mesh_, runner_, report, progress),
@@ -53,6 +53,10 @@ void Engine::merge_points(const PointMerging& options) {
   for (std::size_t r = 0; r < after.size(); ++r)
     changes.push_back({static_cast<RegionId>(r), after[r] - before[r]});
   constrained_.ledger.commit(changes);
+}
+
+void Engine::keep_surface(const TriangleMesh* surface, bool measured) {
+  samples_.keep_surface(surface, std::exchange(original_, std::nullopt), measured);
 }
 
 void Engine::compact() {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "simplify/constraints/constrained_mesh.h"
+#include "simplify/constraints/original_surface.h"
 #include "simplify/constraints/surface_projection.h"
 #include "simplify/mesh/point_merging.h"
 #include "simplify/schedule/block_runner.h"
@@ -29,8 +30,8 @@ class Engine {
     const ReferenceSurface* reference;
     const std::vector<std::uint8_t>& frozen;
     bool fix_boundary;
-    bool keep_volumes = true;                ///< bounds them by a VolumeLedger
-    const OriginalMesh* original = nullptr;  ///< SimplifyOptions::original
+    bool keep_volumes = true;          ///< bounds them by a VolumeLedger
+    OriginalMesh* original = nullptr;  ///< SimplifyOptions::original
   };
   Engine(TetMesh&& mesh, const Options& options, SimplifyReport* report, Progress* progress);
   Engine(const Engine&) = delete;
@@ -54,10 +55,12 @@ class Engine {
   /// Coarsens the mesh in bulk: tetwright::merge_points().
   /// \pre No operation has run; before compact().
   void merge_points(const PointMerging& options);
+  /// InputSamples::keep_surface() with the original's surface, if there is one. Once, before any operation.
+  void keep_surface(const TriangleMesh* surface, bool measured);
   /// Number of tets of the mesh as it came, or of its original.
   std::size_t first_tets() const { return first_tets_; }
   /// Compacts the mesh and gives its triangles samples: InputSamples::assign().
-  /// \pre input_samples().keep_surface() has been called.
+  /// \pre keep_surface() has been called.
   void assign_samples(double edge);
   /// Sets the target edge lengths and their bounds, input units, in the rules.
   ///
@@ -85,6 +88,7 @@ class Engine {
   EditableMesh& mesh_ = constrained_.mesh;
   SurfaceGrid& grid_ = constrained_.grid;
   const std::size_t first_tets_;
+  std::optional<OriginalSurface> original_;  ///< until keep_surface()
   SurfaceProjection projection_;
   InputSamples samples_;
   std::optional<EdgeSizes> sizes_;

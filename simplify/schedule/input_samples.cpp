@@ -9,9 +9,10 @@
 
 namespace tetwright {
 
-void InputSamples::keep_surface(const TriangleMesh* surface, const OriginalMesh* original, bool measured) {
+void InputSamples::keep_surface(const TriangleMesh* surface, std::optional<OriginalSurface> original,
+                                bool measured) {
   const EditableMesh& mesh = constrained_.mesh;
-  surface_ = original ? std::make_unique<RepresentedSurface>(surface_of(mesh, *original))
+  surface_ = original ? std::make_unique<RepresentedSurface>(*std::move(original))
                       : std::make_unique<RepresentedSurface>(mesh, surface);
   if (measured) surface_->find_hidden(mesh);
 }

@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "simplify/constraints/constrained_mesh.h"
@@ -17,12 +18,12 @@ class InputSamples {
  public:
   explicit InputSamples(ConstrainedMesh& constrained) : constrained_(constrained) {}
 
-  /// Keeps the input's surface: `surface` (input units), from which the mesh was made, or that of `original`,
-  /// or, if both are null, the mesh's own surface.
+  /// Keeps the input's surface: `surface` (input units), from which the mesh was made, or `original`, or, if
+  /// there is neither, the mesh's own surface.
   ///
   /// \param measured deviation() will be called.
   /// \pre No operation has run.
-  void keep_surface(const TriangleMesh* surface, const OriginalMesh* original, bool measured);
+  void keep_surface(const TriangleMesh* surface, std::optional<OriginalSurface> original, bool measured);
   /// Sets the max distance, working coordinates, between the points at which new triangles are tested.
   /// \pre assign() has not been called.
   void set_spacing(double spacing) { spacing_ = spacing; }

@@ -26,7 +26,7 @@ struct PerItem {
   static constexpr double lattice_tet = 33, lattice_tet_of_all = 50;
   /// A face of the dense surface: with its brick, with its samples and trees in the simplifier, and in a
   /// file.
-  static constexpr double kept_face = 60, face = 150, filed_face = 20;
+  static constexpr double kept_face = 60, face = 95, filed_face = 20;
   /// A coarse tet with its brick, and in a file.
   static constexpr double kept_tet = 30, filed_tet = 10;
 };
@@ -39,7 +39,7 @@ constexpr double border_bytes_per_area = 100;
 /// Larger bricks gain little: cells around them are 20 % of these.
 constexpr int max_chosen_cells = 256;
 /// Tets after coarsening for each final one, and for each face of a cut and side (coarsen()).
-constexpr double coarse_per_final = 8, coarse_per_cut_face = 2;
+constexpr double coarse_per_final = 5, coarse_per_cut_face = 2.5;
 
 }  // namespace
 

@@ -118,8 +118,9 @@ struct SimplifyOptions {
   /// input mesh's own surface. Must outlive the call.
   const TriangleMesh* surface = nullptr;
   /// The mesh from which coarsen() made this one: its surface and volumes are kept instead of those of the
-  /// coarser mesh. Null: the mesh itself. Not together with `surface`. Must outlive the call.
-  const OriginalMesh* original = nullptr;
+  /// coarser mesh. Null: the mesh itself. Not together with `surface`. Must outlive the call, which moves the
+  /// surface out of it: it may take gigabytes.
+  OriginalMesh* original = nullptr;
   /// Max two-sided distance between the mesh's surface and `surface` or, without one, the input mesh's own
   /// surface; input units. 0: no bound. Parts that start farther away are not moved nearer:
   /// SimplifyReport::deviation has the distance reached. Tuned schedule only.
@@ -224,7 +225,7 @@ struct CoarsenOptions {
   std::string name = "mesh";
 };
 
-/// Coarsens a part of a mesh to about eight times its target and two tets more for each frozen boundary
+/// Coarsens a part of a mesh to about four times its target and two tets more for each frozen boundary
 /// face, for simplify() of all parts together. It does not improve shapes, since later collapses would
 /// change them again, and nothing in it depends on other parts. Guarantees, parallelism and exceptions are
 /// those of simplify(); frozen points keep their coordinates to the last bit.

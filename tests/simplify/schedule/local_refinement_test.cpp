@@ -48,7 +48,7 @@ TEST(LocalRefinement, FollowsASurfaceWithinItsFaces) {
                 nullptr);
   engine.rules.error.max.reset();
   engine.begin_improvement();
-  engine.input_samples().keep_surface(&surface, nullptr, true);
+  engine.keep_surface(&surface, true);
   const double scale = engine.mesh().space().scale(), limit = 0.08 * scale;
   engine.assign_samples(0.2 * scale);
   engine.rules.deviation.tolerance = engine.rules.deviation.max = 0.87 * limit;

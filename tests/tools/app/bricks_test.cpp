@@ -113,13 +113,18 @@ class Bricks : public testing::Test {
     EXPECT_EQ(a.status, 0) << a.err;
     return contents(path("expected.vtu"));
   }
-  /// Runs the job until `enough` says so and kills it then.
-  /// \return whether it was killed before it ended
-  bool kill_when(const std::function<bool()>& enough) const {
+  /// Runs the job until `enough` says so and ends it then.
+  /// \return its status, or 1000 and the signal, see Process
+  int end_when(const std::function<bool()>& enough, int signal) const {
     Process process(words_with_scratch("killed.vtu"), path("err"));
     while (!enough() && !process.ended()) wait_a_moment();
-    process.send(SIGKILL);
-    return process.wait() == 1000 + SIGKILL;
+    process.send(signal);
+    return process.wait();
+  }
+  /// Likewise with SIGKILL.
+  /// \return whether it was killed before it ended
+  bool kill_when(const std::function<bool()>& enough) const {
+    return end_when(enough, SIGKILL) == 1000 + SIGKILL;
   }
   /// The finished bricks.
   std::vector<std::size_t> finished() const {
@@ -175,6 +180,18 @@ TEST_F(Bricks, AKilledRunGoesOn) {
     EXPECT_FALSE(std::filesystem::exists(path("killed.vtu")));
   }
   EXPECT_EQ(expect_resumed(mesh), brick_count);
+}
+
+TEST_F(Bricks, AnInterruptedRunSaysThatItGoesOn) {
+  constexpr int interrupted = 130;
+  int status = 0;
+  for (int attempt = 0; attempt < 20 && status != interrupted; ++attempt)
+    status = end_when([&] { return finished().size() > 0; }, SIGTERM);
+  ASSERT_EQ(status, interrupted);
+  EXPECT_NE(
+      contents(path("err")).find("interrupted; the same call goes on from the bricks that are finished"),
+      std::string::npos)
+      << contents(path("err"));
 }
 
 TEST_F(Bricks, ARunKilledAtAnyMomentGoesOn) {
