@@ -390,6 +390,18 @@ LabelVolume read_label_volume(const std::string& path) {
   return read_whole_volume(need_format(volume_formats(), path, FileKind::volume, FileUse::read), path);
 }
 
+std::int64_t label_layers(const std::string& path) {
+  return layers_of(need_format(volume_formats(), path, FileKind::volume, FileUse::read), path);
+}
+
+std::vector<LabelVolume> read_label_layers(const std::string& path) {
+  const VolumeFormat& format = need_format(volume_formats(), path, FileKind::volume, FileUse::read);
+  if (format.read_layers) return format.read_layers(read_whole_file(path), path, read_whole_file);
+  std::vector<LabelVolume> one;
+  one.push_back(read_whole_volume(format, path));
+  return one;
+}
+
 std::unique_ptr<LabelSource> open_label_source(const std::string& path, const LabelSourceOptions& options) {
   const VolumeFormat& format = need_format(volume_formats(), path, FileKind::volume, FileUse::read);
   if (auto source = open_by_boxes(format, path, options.cache_bytes)) return source;

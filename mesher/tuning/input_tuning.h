@@ -159,6 +159,13 @@ struct InputTuning {
   };
 
   /// Max number of labels named in messages: enough to recognise a table of labels, few enough to read.
+  /// Volumes with a mask each.
+  struct Masks {
+    /// Max distance of corresponding voxels of one grid, voxels: above the rounding of headers in single
+    /// precision or with six digits.
+    static constexpr double same_grid = 1e-3;
+  };
+
   struct Messages {
     static constexpr std::size_t max_listed_labels = 30;  ///< in one message
     static constexpr std::size_t max_named_labels = 20;   ///< with a finding of their own

@@ -50,6 +50,15 @@ void run(std::string_view bytes, Read read) {
   }
 }
 
+/// Reads the layers of overlapping segments, or the only one.
+void run_layers(std::string_view bytes) {
+  try {
+    for (const LabelVolume& layer : read_nrrd_layers(bytes, "fuzz"))
+      TETWRIGHT_CHECK(layer.labels.size() == layer.voxels());
+  } catch (const InputError&) {
+  }
+}
+
 /// Reads a format with a single file.
 LabelVolume read_inr_alone(std::string_view bytes, const std::string& name, const FileReader&) {
   return read_inr(bytes, name);
@@ -125,7 +134,11 @@ void run_file(std::string_view bytes, std::unique_ptr<LabelSource> (*open)(const
 
 using Bytes = std::string_view;
 constexpr Target targets[] = {
-    {"nrrd", [](Bytes b) { run(b, read_nrrd); }},
+    {"nrrd",
+     [](Bytes b) {
+       run(b, read_nrrd);
+       run_layers(b);
+     }},
     {"metaimage", [](Bytes b) { run(b, read_metaimage); }},
     {"nifti", [](Bytes b) { run(b, read_nifti); }},
     {"inr", [](Bytes b) { run(b, read_inr_alone); }},

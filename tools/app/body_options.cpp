@@ -73,14 +73,14 @@ void add_bodies(CLI::App& app, CommandLine& c) {
   add_length(app, "--contact-tolerance", c.options.bodies.contact_tolerance,
              "Join bodies across gaps and overlaps up to this")
       ->default_str("0.001%");
-  add_rule<OverlapRule>(
-      app, "--on-overlap", c.options.bodies.overlap,
-      {{"later", OverlapRule::later},
-       {"first", OverlapRule::first},
-       {"material", OverlapRule::material},
-       {"error", OverlapRule::error}},
-      "Give a volume that two crossing bodies claim to: later (the later one), first (the earlier one), "
-      "material (one of its own, A+B), or refuse it: error");
+  add_rule<OverlapRule>(app, "--on-overlap", c.options.bodies.overlap,
+                        {{"later", OverlapRule::later},
+                         {"first", OverlapRule::first},
+                         {"material", OverlapRule::material},
+                         {"error", OverlapRule::error}},
+                        "Give what two crossing bodies, or two masks, claim to: later (the later one), first "
+                        "(the earlier one), "
+                        "material (one of its own, A+B), or refuse it: error");
   add_rule<RegionRule>(
       app, "--regions", c.options.bodies.regions.rule,
       {{"cells", RegionRule::cells}, {"outer", RegionRule::outer}},

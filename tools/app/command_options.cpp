@@ -310,7 +310,8 @@ std::string scans() {
   return "Surfaces (" + known_extensions(FileKind::surface) +
          ") and level sets (.vdb), each a material; later ones carve earlier ones; or one segmented volume "
          "(" +
-         known_extensions(FileKind::volume) + ", .vdb of whole numbers)";
+         known_extensions(FileKind::volume) +
+         ", .vdb of whole numbers), or several or a folder of them that are masks of a material each";
 }
 std::string meshes() { return "Tet mesh: " + known_extensions(FileKind::tet_mesh); }
 

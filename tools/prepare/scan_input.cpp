@@ -13,6 +13,7 @@
 #include "tetwright/error.h"
 #include "tetwright/io.h"
 #include "tetwright/mesher_input.h"
+#include "tools/prepare/mask_input.h"
 
 namespace tetwright {
 
@@ -41,8 +42,8 @@ void check_input_kinds(const std::vector<Input>& inputs, Task task) {
   }
 }
 
-/// Whether the input is a segmented volume, which must then be the only input, since it names all materials.
-/// The kind of a .vdb file is known only after reading; its labels are stored in `vdb_labels`.
+/// Whether the input is a segmented volume, or several masks. The kind of a .vdb file is known only after
+/// reading; its labels are stored in `vdb_labels`.
 bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
                std::optional<LabelVolume>& vdb_labels) {
   bool volume = std::any_of(inputs.begin(), inputs.end(),
@@ -63,8 +64,12 @@ bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
   if (std::any_of(inputs.begin(), inputs.end(),
                   [](const Input& input) { return input.role != Input::Role::body; }))
     throw UsageError("--sheet and --partition are for surfaces, and the input is a segmented volume");
-  if (inputs.size() > 1 || !inputs.front().material.empty())
-    throw UsageError("a segmented volume must be the only input; leave out the others");
+  if (inputs.size() > 1 && (vdb_labels || std::any_of(inputs.begin(), inputs.end(), [](const Input& input) {
+                              return input.kind() != FileKind::volume;
+                            })))
+    throw UsageError(
+        "a segmented volume and surfaces, or a .vdb file of labels and another input, cannot be meshed "
+        "together; leave out all others");
   const CellOptions& cells = options.cells;
   const BodyOptions& bodies = options.bodies;
   if (!bodies.layers.empty())
@@ -79,9 +84,10 @@ bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
     throw UsageError("--split-solids is for surfaces, and the input is a segmented volume");
   if (bodies.nested != NestedRule::automatic)
     throw UsageError("--nested is for surfaces, and the input is a segmented volume");
-  if (bodies.contact_tolerance || bodies.overlap != OverlapRule::later)
-    throw UsageError(
-        "--contact-tolerance and --on-overlap are for surfaces, and the input is a segmented volume");
+  if (bodies.contact_tolerance)
+    throw UsageError("--contact-tolerance is for surfaces, and the input is a segmented volume");
+  if (bodies.overlap != OverlapRule::later && (vdb_labels || !are_masks(inputs)))
+    throw UsageError("--on-overlap is for surfaces and masks, and the input is one segmented volume");
   if (bodies.regions.rule != RegionRule::cells || !bodies.regions.seeds.empty())
     throw UsageError(
         "--regions and --region are for surfaces, and the input is a segmented volume; --label-names names "
@@ -112,14 +118,17 @@ void take_names(const LabelVolume& volume, LabelChoice& choice) {
     if (tag != choice.outside_label) choice.names[tag] = unique.add(name);
 }
 
-LabelInput read_labels(std::optional<LabelVolume> vdb_labels, Input& input, PrepareRun& run) {
+LabelInput read_labels(std::optional<LabelVolume> vdb_labels, std::vector<Input>& inputs, PrepareRun& run) {
   // Done before reading the volume, which takes longer.
   LabelChoice choice = label_choice(run.options.labels);
-  LabelVolume volume = vdb_labels ? std::move(*vdb_labels) : take_label_volume(input, run.seconds_waited);
-  if (run.options.labels.names_file.empty()) take_names(volume, choice);
+  const bool masks = !vdb_labels && are_masks(inputs);
+  LabelVolume volume = vdb_labels ? std::move(*vdb_labels)
+                       : masks    ? join_masks(inputs, choice, run)
+                                  : take_label_volume(inputs.front(), run.seconds_waited);
+  if (!masks && run.options.labels.names_file.empty()) take_names(volume, choice);
   run.report.material_colours = volume.colours;
-  LabelInput labels = make_label_input(std::move(volume), input.name, choice, &run.progress);
-  run.report.diagnostics = labels.findings;
+  LabelInput labels = make_label_input(std::move(volume), run.report.inputs.front(), choice, &run.progress);
+  run.report.diagnostics.insert(run.report.diagnostics.end(), labels.findings.begin(), labels.findings.end());
   run.report.volume.emplace(labels);
   return labels;
 }
@@ -260,10 +269,11 @@ MesherInput read_surfaces(std::vector<Input>& inputs, PrepareRun& run) {
 ScanInput read_scan(std::vector<Input> inputs, PrepareRun& run) {
   const Stopwatch watch;
   run.progress.begin_stage("read");
+  inputs = with_masks_of_folders(std::move(inputs), run.report);
   check_input_kinds(inputs, run.task);
   std::optional<LabelVolume> vdb_labels;
   ScanInput input = is_volume(inputs, run.options, vdb_labels)
-                        ? ScanInput(read_labels(std::move(vdb_labels), inputs.front(), run))
+                        ? ScanInput(read_labels(std::move(vdb_labels), inputs, run))
                         : ScanInput(read_surfaces(inputs, run));
   run.report.seconds_read = watch.seconds();
   run.report.loops_read = watch.loops();

@@ -90,6 +90,9 @@ enum class DiagnosticCode : std::uint8_t {
   spacing_assumed,
   islands_merged,
   islands_all_small,
+  masks_overlap,
+  masks_empty,
+  space_converted,
   // Tet meshes.
   tet_points_merged,
   tets_collapsed,

@@ -36,6 +36,12 @@ struct LabelGrid {
   std::uint64_t voxels() const;
 };
 
+/// Converts a grid to another coordinate system, if both are such as "left-posterior-superior": coordinates
+/// along the axes that point the other way change their signs.
+/// \param space see LabelGrid::space
+/// \return false if nothing changed: the systems are equal, or one of them is unknown
+bool change_space(LabelGrid& grid, const std::string& space);
+
 /// A segmented volume in memory: a label for each voxel.
 struct LabelVolume : LabelGrid {
   std::vector<MaterialTag> labels;  ///< the first axis fastest

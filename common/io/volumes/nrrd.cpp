@@ -64,7 +64,9 @@ std::vector<std::optional<Vec3>> vectors(const HeaderFields& header, const std::
 /// Interprets the fields of a header.
 class NrrdHeader {
  public:
-  NrrdHeader(const HeaderFields& fields, std::int64_t max_voxels) : fields_(fields), max_voxels_(max_voxels) {
+  /// \param layers if above 1, an axis that is not spatial has this size: those of overlapping segments
+  NrrdHeader(const HeaderFields& fields, std::int64_t max_voxels, std::int64_t layers)
+      : fields_(fields), max_voxels_(max_voxels), layers_(layers) {
     const std::int64_t dimension = fields_.integer("dimension");
     if (dimension < 3 || dimension > max_axes)
       fields_.fail("dimension",
@@ -86,6 +88,8 @@ class NrrdHeader {
 
   /// The volume without labels.
   LabelVolume volume() const { return volume_; }
+  /// Number of spatial axes that vary faster than the layers.
+  std::size_t axes_before_layers() const { return axes_before_layers_; }
 
  private:
   void need_one_each(const std::string& field, std::size_t n) const {
@@ -103,10 +107,21 @@ class NrrdHeader {
   /// Chooses three axes. Other axes must have size 1 and are dropped, first those that are not spatial.
   void choose_axes() {
     for (std::size_t a = 0; a < axes_; ++a) chosen_.push_back(a);
+    const std::size_t wanted = layers_ > 1 ? 4 : 3;
     for (const bool only_others : {true, false})
-      for (std::size_t k = chosen_.size(); k-- > 0 && chosen_.size() > 3;)
+      for (std::size_t k = chosen_.size(); k-- > 0 && chosen_.size() > wanted;)
         if (sizes_[chosen_[k]] == 1 && !(only_others && is_spatial(chosen_[k])))
           chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(k));
+    if (layers_ > 1) {
+      const auto of_layers = std::find_if(chosen_.begin(), chosen_.end(), [&](std::size_t a) {
+        return sizes_[a] == layers_ && !is_spatial(a);
+      });
+      if (of_layers == chosen_.end())
+        fields_.fail("sizes", "its segments are in " + std::to_string(layers_) +
+                                  " layers, but no axis of that size has the kind list");
+      axes_before_layers_ = static_cast<std::size_t>(of_layers - chosen_.begin());
+      chosen_.erase(of_layers);
+    }
     for (const std::size_t a : chosen_)
       if (!is_spatial(a))
         fields_.fail("sizes", "axis " + std::to_string(a) + " (" + std::to_string(sizes_[a]) +
@@ -193,8 +208,8 @@ class NrrdHeader {
   }
 
   const HeaderFields& fields_;
-  std::int64_t max_voxels_;
-  std::size_t axes_ = 0;
+  std::int64_t max_voxels_, layers_;
+  std::size_t axes_ = 0, axes_before_layers_ = 0;
   std::vector<std::int64_t> sizes_;
   std::vector<std::string_view> kinds_;
   std::vector<std::optional<Vec3>> directions_;
@@ -231,8 +246,10 @@ enum class NrrdEncoding { raw, gzip, text };
 
 /// The header of an NRRD file, checked.
 struct NrrdFile {
-  NrrdFile(TextScanner& in, std::int64_t max_voxels) : fields(read_nrrd_header(in, segments)) {
-    if (segments.layers() > 1)
+  /// \param layered whether segments may overlap, in layers
+  NrrdFile(TextScanner& in, std::int64_t max_voxels, bool layered = false)
+      : fields(read_nrrd_header(in, segments)) {
+    if (segments.layers() > 1 && !layered)
       fields.fail("sizes", "its segments overlap, in " + std::to_string(segments.layers()) +
                                " layers; each voxel needs one label: export the segmentation as a label map "
                                "(3D Slicer: Segmentations, Export/import), or save it without overlap");
@@ -244,8 +261,10 @@ struct NrrdFile {
     else if (named != "raw")
       fields.fail("encoding",
                   "encoding " + in_quotes(named) + " is not supported; save the volume as raw or gzip");
-    volume = NrrdHeader(fields, max_voxels).volume();
-    segments.give_names_and_colours(volume);
+    const NrrdHeader header(fields, max_voxels, segments.layers());
+    volume = header.volume();
+    axes_before_layers = header.axes_before_layers();
+    if (segments.layers() == 1) segments.give_names_and_colours(volume);
     check_geometry(volume, in.name());
     format.type = nrrd_voxel_type(fields);
     data_field = fields.any_of({"data file", "datafile"});
@@ -269,15 +288,15 @@ struct NrrdFile {
   std::string data_field, skip_field;
   bool detached = false;
   std::int64_t lines_to_skip = 0, bytes_to_skip = 0;
+  std::size_t axes_before_layers = 0;
 };
 
-}  // namespace
-
-LabelVolume read_nrrd(std::string_view bytes, const std::string& name, const FileReader& read) {
-  TextScanner in(bytes, name);
-  NrrdFile nrrd(in, max_volume_voxels);
+/// Reads the labels that follow a header.
+/// \param size items along each axis
+std::vector<MaterialTag> read_body(NrrdFile& nrrd, const TextScanner& in, std::string_view bytes,
+                                   const std::string& name, const FileReader& read,
+                                   const std::array<int, 3>& size) {
   const HeaderFields& header = nrrd.fields;
-  LabelVolume& volume = nrrd.volume;
   DataFile file{name, {}};
   if (nrrd.detached) file = read_data_file(header, nrrd.data_field, read);
   TextScanner body = nrrd.detached ? TextScanner(file.bytes, file.path) : in;
@@ -291,20 +310,60 @@ LabelVolume read_nrrd(std::string_view bytes, const std::string& name, const Fil
   if (nrrd.encoding == NrrdEncoding::text) {
     if (body.take_bytes(static_cast<std::size_t>(skip)).size() < static_cast<std::size_t>(skip))
       header.fail(nrrd.skip_field, std::to_string(skip) + " bytes to skip, but the data are shorter");
-    volume.labels = read_voxels_as_text(body, volume.size);
-    return std::move(volume);
+    return read_voxels_as_text(body, size);
   }
   nrrd.format.swap = is_swapped(header, nrrd.format.type);
   if (skip == -1)
-    data.remove_prefix(static_cast<std::size_t>(offset_from_end(data.size(), volume.size, nrrd.format.type)));
+    data.remove_prefix(static_cast<std::size_t>(offset_from_end(data.size(), size, nrrd.format.type)));
   ByteSource source(
       data, nrrd.encoding == NrrdEncoding::gzip ? ByteSource::Packing::deflate : ByteSource::Packing::none,
       file.path);
   if (skip > 0 && source.skip(static_cast<std::uint64_t>(skip)) < static_cast<std::uint64_t>(skip))
     header.fail(nrrd.skip_field,
                 std::to_string(skip) + " bytes to skip, but the data have " + std::to_string(source.taken()));
-  volume.labels = read_voxels(source, nrrd.format, volume.size);
-  return std::move(volume);
+  return read_voxels(source, nrrd.format, size);
+}
+
+}  // namespace
+
+LabelVolume read_nrrd(std::string_view bytes, const std::string& name, const FileReader& read) {
+  TextScanner in(bytes, name);
+  NrrdFile nrrd(in, max_volume_voxels);
+  nrrd.volume.labels = read_body(nrrd, in, bytes, name, read, nrrd.volume.size);
+  return std::move(nrrd.volume);
+}
+
+std::int64_t nrrd_layers(const HeaderBytes& head, const std::string& name) {
+  TextScanner in(head.bytes, name);
+  NrrdSegments segments;
+  (void)read_nrrd_header(in, segments);
+  return segments.layers();
+}
+
+std::vector<LabelVolume> read_nrrd_layers(std::string_view bytes, const std::string& name,
+                                          const FileReader& read) {
+  TextScanner in(bytes, name);
+  NrrdFile nrrd(in, max_volume_voxels, true);
+  const std::int64_t layers = nrrd.segments.layers();
+  // The body is read as a volume with the layers along the spatial axis that they precede.
+  std::array<std::int64_t, 3> all{nrrd.volume.size[0], nrrd.volume.size[1], nrrd.volume.size[2]};
+  all[std::min<std::size_t>(nrrd.axes_before_layers, 2)] *= layers;
+  const std::vector<MaterialTag> labels =
+      read_body(nrrd, in, bytes, name, read, checked_size(all, name, nrrd.fields.line("sizes")));
+  std::size_t before = 1;  // items of a layer that follow each other
+  for (std::size_t a = 0; a < nrrd.axes_before_layers; ++a)
+    before *= static_cast<std::size_t>(nrrd.volume.size[a]);
+  std::vector<LabelVolume> volumes;
+  for (std::int64_t layer = 0; layer < layers; ++layer) {
+    LabelVolume& volume = volumes.emplace_back(nrrd.volume);
+    nrrd.segments.give_names_and_colours(volume, layer);
+    volume.labels.resize(volume.voxels());
+    for (std::size_t i = 0; i < volume.labels.size(); ++i)
+      volume.labels[i] =
+          labels[(i / before * static_cast<std::size_t>(layers) + static_cast<std::size_t>(layer)) * before +
+                 i % before];
+  }
+  return volumes;
 }
 
 std::optional<RawVolume> find_nrrd(const HeaderBytes& head, const std::string& name) {

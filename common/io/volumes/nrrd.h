@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/io/volumes/data_file.h"
 #include "common/io/volumes/raw_volume.h"
@@ -15,7 +17,8 @@ class Progress;
 
 /// Reads an NRRD volume: raw, gzip or text, attached to its header or in a separate file. If there are more
 /// than three axes, those of size 1 are dropped. Labels get the names of 3D Slicer's segments (.seg.nrrd);
-/// segments in several layers are rejected with advice.
+/// segments in several layers are rejected with advice, see
+/// read_nrrd_layers().
 ///
 /// No library is used: libteem, which defines the format, has had no release since 2012, reads through a FILE
 /// and allocates as much memory as the header promises.
@@ -24,6 +27,14 @@ class Progress;
 /// \throws InputError with the line of the header for malformed contents
 LabelVolume read_nrrd(std::string_view bytes, const std::string& name,
                       const FileReader& read = read_whole_file);
+
+/// Number of layers that the segments of a file are in; more than one if they overlap.
+/// \throws InputError for a malformed header
+std::int64_t nrrd_layers(const HeaderBytes& head, const std::string& name);
+
+/// Reads all layers of segments, in one axis of kind list. Each has the names and colours of its segments.
+std::vector<LabelVolume> read_nrrd_layers(std::string_view bytes, const std::string& name,
+                                          const FileReader& read = read_whole_file);
 
 /// RawVolumeFinder of NRRD.
 std::optional<RawVolume> find_nrrd(const HeaderBytes& head, const std::string& name);

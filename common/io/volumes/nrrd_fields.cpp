@@ -89,9 +89,10 @@ void NrrdSegments::add(std::string_view key, std::string_view value) {
     layers_ = std::max(layers_, segment.layer + 1);
 }
 
-void NrrdSegments::give_names_and_colours(LabelGrid& volume) const {
+void NrrdSegments::give_names_and_colours(LabelGrid& volume, std::int64_t layer) const {
   for (const auto& [number, segment] : segments_) {
-    if (!segment.has_label || segment.label < std::numeric_limits<MaterialTag>::min() ||
+    if (segment.layer != layer || !segment.has_label ||
+        segment.label < std::numeric_limits<MaterialTag>::min() ||
         segment.label > std::numeric_limits<MaterialTag>::max())
       continue;
     const auto tag = static_cast<MaterialTag>(segment.label);

@@ -22,7 +22,8 @@ class NrrdSegments {
   void add(std::string_view key, std::string_view value);
   /// Number of layers; overlapping segments are stored in several layers.
   std::int64_t layers() const { return layers_; }
-  void give_names_and_colours(LabelGrid& grid) const;
+  /// Gives the names and colours of the segments of a layer.
+  void give_names_and_colours(LabelGrid& grid, std::int64_t layer = 0) const;
 
  private:
   using Colour = std::array<double, 3>;

@@ -11,9 +11,6 @@ namespace tetwright {
 
 namespace {
 
-/// Bytes of a header that are read. Headers with the names of hundreds of segments have some 100 kB.
-constexpr std::size_t max_header_bytes = std::size_t{1} << 22;
-
 /// Bytes of voxels that are read and converted at a time.
 constexpr std::size_t raw_piece_bytes = std::size_t{1} << 20;
 

@@ -21,6 +21,9 @@ struct RawVolume {
   VoxelFormat format;
 };
 
+/// Bytes of a header that are read. Headers with the names of hundreds of segments have some 100 kB.
+inline constexpr std::size_t max_header_bytes = std::size_t{1} << 22;
+
 /// The first bytes of a file, which may contain its whole header.
 struct HeaderBytes {
   std::string_view bytes;

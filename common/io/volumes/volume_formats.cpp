@@ -43,9 +43,16 @@ constexpr std::array<VolumeFormat, 15> formats_of_volumes{
     {{.extension = ".nrrd",
       .read = read_nrrd,
       .find = find_nrrd,
+      .layers = nrrd_layers,
+      .read_layers = read_nrrd_layers,
       .write = write_nrrd,
       .write_source = write_raw_nrrd},
-     {.extension = ".nhdr", .read = read_nrrd, .find = find_nrrd, .one_file = false},
+     {.extension = ".nhdr",
+      .read = read_nrrd,
+      .find = find_nrrd,
+      .layers = nrrd_layers,
+      .read_layers = read_nrrd_layers,
+      .one_file = false},
      {.extension = ".mhd", .read = read_metaimage, .find = find_metaimage, .one_file = false},
      {.extension = ".mha", .read = read_metaimage, .find = find_metaimage},
      {.extension = ".nii", .read = read_nifti, .find = find_nifti},
@@ -98,6 +105,14 @@ std::unique_ptr<LabelSource> open_by_boxes(const VolumeFormat& format, const std
   if (format.open) return format.open(volume_path(path), cache_bytes);
   if (!format.find) return nullptr;
   return find_raw_volume(format.header ? with_extension(path, format.header) : path, format.find);
+}
+
+std::int64_t layers_of(const VolumeFormat& format, const std::string& path) {
+  std::error_code error;
+  if (!format.layers || !std::filesystem::is_regular_file(path, error)) return 1;
+  const FileRanges file(path);
+  const ByteBuffer head = file.head(max_header_bytes);
+  return format.layers({head.view(), file.size()}, path);
 }
 
 LabelVolume read_whole_volume(const VolumeFormat& format, const std::string& path) {

@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "common/io/volumes/data_file.h"
 #include "common/io/volumes/raw_volume.h"
@@ -32,6 +33,10 @@ struct VolumeFormat {
   LabelVolume (*read)(std::string_view bytes, const std::string& name, const FileReader& others) = nullptr;
   RawVolumeFinder find = nullptr;  ///< null: voxels are always read as a whole
   std::unique_ptr<LabelSource> (*open)(const VolumePath& path, std::size_t cache_bytes) = nullptr;
+  /// Number of layers of overlapping segments, and their reader; null: there is always one.
+  std::int64_t (*layers)(const HeaderBytes& head, const std::string& name) = nullptr;
+  std::vector<LabelVolume> (*read_layers)(std::string_view bytes, const std::string& name,
+                                          const FileReader& others) = nullptr;
   std::string (*write)(const LabelVolume& volume) = nullptr;  ///< null: the format can only be read
   /// Writes slab by slab; null like `write`. See write_label_source().
   void (*write_source)(const LabelSource& source, MaterialTag largest, const ByteSink& sink,
@@ -46,6 +51,9 @@ std::span<const VolumeFormat> volume_formats();
 /// \return null if the file can only be read as a whole, since it is compressed or text
 std::unique_ptr<LabelSource> open_by_boxes(const VolumeFormat& format, const std::string& path,
                                            std::size_t cache_bytes);
+
+/// Number of layers of overlapping segments; 1 for other files.
+std::int64_t layers_of(const VolumeFormat& format, const std::string& path);
 
 /// Reads all labels, by boxes if possible.
 LabelVolume read_whole_volume(const VolumeFormat& format, const std::string& path);

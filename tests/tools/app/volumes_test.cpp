@@ -157,7 +157,7 @@ TEST_F(Volumes, GridsOfOpenVdb) {
   EXPECT_TRUE(contents(path("out.vtu")) == as_nrrd);
   EXPECT_EQ(nlohmann::json::parse(contents(path("s.json")))["input"]["volume"]["space"], "unknown");
   expect_refused(path("organs.vdb") + " --layer skin=1", 2, {"--layer", "segmented volume"});
-  expect_refused(path("organs.vdb") + " " + path("organs.nrrd"), 2, {"only input"});
+  expect_refused(path("organs.vdb") + " " + path("organs.nrrd"), 2, {"cannot be meshed together"});
   expect_refused("--material m=" + path("organs.vdb"), 3, {"no level set", "segments (no class, int32)"});
   const auto other = grid->deepCopy();
   other->setName("others");
@@ -304,9 +304,9 @@ TEST_F(Volumes, TwoLabelsOfOneNameAreRefusedAtTheirLine) {
 TEST_F(Volumes, CallsThatDoNotFit) {
   write_surface(std::get<TriangleMesh>(make_sample("sphere")), path("ball.off"));
   const std::string organs = path("organs.nrrd"), ball = path("ball.off");
-  for (const std::string& both : {organs + " " + ball, ball + " " + organs, organs + " " + organs,
-                                  organs + " --material b=" + ball, ball + " --material b=" + organs})
-    expect_refused(both, 2, {"only input"});
+  for (const std::string& both : {organs + " " + ball, ball + " " + organs, organs + " --material b=" + ball,
+                                  ball + " --material b=" + organs})
+    expect_refused(both, 2, {"cannot be meshed together"});
   expect_refused(organs + " --layer skin=1", 2, {"--layer"});
   expect_refused(organs + " --nested cavity", 2, {"--nested"});
   expect_refused(organs + " --regions outer", 2, {"--regions"});
@@ -315,7 +315,8 @@ TEST_F(Volumes, CallsThatDoNotFit) {
   expect_refused(ball + " --min-voxels 4", 2, {"--min-voxels", "segmented volumes"});
   expect_refused(organs + " --labels 5-1", 2, {"5-1"});
   expect_refused(organs + " --label-names " + path("none.txt"), 3, {"none.txt"});
-  expect_refused("--material b=" + organs, 2, {"only input"});
+  for (const std::string& masks : {organs + " " + organs, "--material b=" + organs})
+    expect_refused(masks, 3, {"has the labels", "is a mask"});
 }
 
 }  // namespace

@@ -297,6 +297,15 @@ TriangleMesh read_surface(const std::string& path, std::vector<Dropped>* dropped
 ReadTetMesh read_tet_mesh(const std::string& path, const ReadTetMeshOptions& options = {});
 LabelVolume read_label_volume(const std::string& path);
 
+/// Number of layers of a segmentation whose segments overlap (.seg.nrrd of 3D Slicer), from its header; 1 for
+/// other volumes.
+/// \throws UsageError if the path is not that of a volume
+/// \throws InputError if it is missing, or its header is malformed
+std::int64_t label_layers(const std::string& path);
+/// Reads all layers of a segmentation. Each has the names and colours of its segments. Exceptions as for
+/// read_label_volume().
+std::vector<LabelVolume> read_label_layers(const std::string& path);
+
 struct LabelSourceOptions {
   /// Decoded chunks that the source keeps, bytes. Each concurrent call of LabelSource::read() takes the
   /// memory of a chunk beside them, encoded and decoded.

@@ -52,6 +52,39 @@ TEST(Nrrd, NamesOfSegments) {
                      "overlap, in 3 layers");
 }
 
+TEST(Nrrd, LayersOfOverlappingSegments) {
+  const std::string segments =
+      "Segment0_Name:=liver\nSegment0_LabelValue:=1\nSegment0_Layer:=0\nSegment1_Name:=tumour\n"
+      "Segment1_LabelValue:=1\nSegment1_Layer:=1\n\n";
+  const auto header = [](const std::string& sizes, const std::string& kinds) {
+    return "NRRD0004\ntype: uchar\ndimension: 4\nencoding: text\nsizes: " + sizes + "\nkinds: " + kinds +
+           "\n";
+  };
+  using Labels = std::vector<MaterialTag>;
+  const auto expect = [&](const std::string& bytes, const std::array<int, 3>& size, const Labels& first,
+                          const Labels& second) {
+    const std::vector<LabelVolume> layers = read_nrrd_layers(bytes, "f");
+    ASSERT_EQ(layers.size(), 2u);
+    EXPECT_EQ(layers[0].size, size);
+    EXPECT_EQ(layers[0].labels, first);
+    EXPECT_EQ(layers[1].labels, second);
+    EXPECT_EQ(layers[0].names, (std::map<MaterialTag, std::string>{{1, "liver"}}));
+    EXPECT_EQ(layers[1].names, (std::map<MaterialTag, std::string>{{1, "tumour"}}));
+    EXPECT_EQ(nrrd_layers({bytes, bytes.size()}, "f"), 2);
+  };
+  expect(header("2 1 3 2", "list domain domain domain") + segments + "1 2 3 4 5 6 7 8 9 10 11 12", {1, 3, 2},
+         {1, 3, 5, 7, 9, 11}, {2, 4, 6, 8, 10, 12});
+  expect(header("3 2 2 1", "domain list domain domain") + segments + "1 2 3 4 5 6 7 8 9 10 11 12", {3, 2, 1},
+         {1, 2, 3, 7, 8, 9}, {4, 5, 6, 10, 11, 12});
+  expect(header("3 1 2 2", "domain domain domain list") + segments + "1 2 3 4 5 6 7 8 9 10 11 12", {3, 1, 2},
+         {1, 2, 3, 4, 5, 6}, {7, 8, 9, 10, 11, 12});
+  EXPECT_EQ(read_nrrd_layers(plain, "f").front().labels, counted_labels());
+  const auto read = [](std::string_view b, const char* name) { return read_nrrd_layers(b, name); };
+  expect_input_error(read, header("3 1 3 2", "list domain domain domain") + segments + "1", "line 5",
+                     "in 2 layers, but no axis of that size has the kind list");
+  expect_input_error(read, header("2 1 3 2", "list domain domain domain") + segments + "1 2 3", "", "");
+}
+
 TEST(Nrrd, EveryTypeInBothByteOrders) {
   expect_counted(plain);
   expect_type<std::int8_t>("signed char");

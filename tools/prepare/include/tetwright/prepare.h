@@ -61,7 +61,7 @@ struct Input {
   Input(std::string of, TriangleMesh surface) : Input(std::move(of), InputSurface{std::move(surface)}) {}
   Input(std::string of, TetMesh mesh) : Input(std::move(of), InputMesh{{std::move(mesh), "material"}}) {}
 
-  /// Sets the name of the material. For surfaces and level sets; later materials carve earlier ones.
+  /// Sets the name of the material. For surfaces, level sets and masks; later materials carve earlier ones.
   Input as(std::string material_name) && {
     material = std::move(material_name);
     return std::move(*this);
@@ -409,9 +409,9 @@ struct Prepared {
   bool falls_short() const { return report.falls_short(); }
 };
 
-/// Turns scans (surfaces, level sets, or one segmented volume) into a mesh for simulation: chooses the cells,
-/// meshes, simplifies to the target, improves the shapes, and compares the result with the input. Gives the
-/// same bytes as the program's command `prepare` with the same options.
+/// Turns scans (surfaces, level sets, one segmented volume, or masks) into a mesh for simulation: chooses the
+/// cells, meshes, simplifies to the target, improves the shapes, and compares the result with the input.
+/// Gives the same bytes as the program's command `prepare` with the same options.
 ///
 /// Writes to no stream or file. Uses `options.limits.threads` threads and does not change the limits of
 /// oneTBB. Concurrent calls are safe and give the same results as sequential ones.

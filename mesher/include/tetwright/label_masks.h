@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tetwright/label_volume.h"
+#include "tetwright/mesher_input.h"
+
+namespace tetwright {
+
+/// A mask: the voxels of a volume that have one label.
+struct LabelMask {
+  std::string name;     ///< of its material
+  MaterialTag tag = 0;  ///< of its material; not 0
+};
+
+/// Joins masks, each of which names its own voxels, to a segmented volume: masks of organs, or segments that
+/// overlap.
+class LabelMasks {
+ public:
+  /// \param rule to which mask a voxel belongs that several have: OverlapRule::later the one that was added
+  ///   last, ::first the first one, ::material a material of its own, called a+b after masks a and b
+  explicit LabelMasks(OverlapRule rule) : rule_(rule) {}
+
+  /// Adds the masks of a volume; their labels are the keys of `masks`. Voxels of other labels, and of
+  /// `outside`, belong to none. All volumes have the grid of the first one, to a thousandth of a voxel. A
+  /// volume whose file names another coordinate system than that of the first one (LabelGrid::space) is
+  /// converted. Parallel; the result does not depend on the number of threads. \param volume has eight bytes
+  /// for each voxel together with the result \param file for messages \throws InputError if the grid is
+  /// another one, or masks overlap and the rule is OverlapRule::error
+  void add(LabelVolume volume, const std::string& file, const std::map<MaterialTag, LabelMask>& masks,
+           MaterialTag outside);
+
+  struct Joined {
+    /// Has the grid of the first volume, 0 where no mask has a voxel, and the names and colours of all
+    /// materials.
+    LabelVolume volume;
+    std::vector<OverlapReport> overlaps;  ///< by pair, in the order of the masks
+    std::vector<Diagnostic> findings;
+  };
+  /// \param files what the masks come from, for messages
+  /// \throws NothingToMeshError if no mask has a voxel
+  Joined join(const std::string& files) &&;
+
+ private:
+  struct Material {
+    LabelMask mask;
+    std::size_t voxels = 0;  ///< of the mask
+  };
+  struct Overlap {
+    MaterialTag first, second;
+    std::size_t voxels, first_voxel;
+  };
+
+  void begin(LabelVolume& volume, const std::string& file);
+  void check_grid(LabelGrid& grid, const std::string& file);
+  std::string name_of(MaterialTag tag) const;
+  Vec3 centre(std::size_t voxel) const;
+  void report(Joined& joined) const;
+
+  OverlapRule rule_;
+  LabelVolume result_;
+  std::string first_file_;
+  std::vector<Material> materials_;
+  std::vector<Overlap> overlaps_;
+  /// Voxels in several masks. With OverlapRule::material their labels are -1, -2, ... for these names, until
+  /// all tags are known.
+  std::vector<bool> in_several_;
+  std::vector<std::string> shared_names_;
+  std::size_t converted_ = 0;  ///< volumes brought into the space of the first one
+  std::string other_space_;
+};
+
+/// The label of a mask: the one that voxels have besides `outside`.
+/// \return `outside` if all voxels have that
+/// \throws InputError if there are several
+MaterialTag label_of_mask(const LabelVolume& volume, MaterialTag outside, const std::string& file);
+
+}  // namespace tetwright

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tetwright/label_masks.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/common/io/expect_error.h"
+
+namespace tetwright::label_masks_test {
+namespace {
+
+using Labels = std::vector<MaterialTag>;
+using Texts = std::vector<std::string>;
+
+LabelVolume row(const Labels& labels) {
+  LabelVolume volume;
+  volume.size = {static_cast<int>(labels.size()), 1, 1};
+  volume.origin = {10, 20, 30};
+  volume.directions << 2, 0, 0, 0, 2, 0, 0, 0, 2;
+  volume.space = "right-anterior-superior";
+  volume.labels = labels;
+  return volume;
+}
+
+/// Three masks: a has voxels 0 to 3, b 2 to 5, c 3.
+LabelMasks three(OverlapRule rule) {
+  LabelMasks masks(rule);
+  masks.add(row({1, 1, 1, 1, 0, 0, 0}), "a.nii", {{1, {"a", 1}}}, 0);
+  masks.add(row({0, 0, 255, 255, 255, 255, 0}), "b.nii", {{255, {"b", 2}}}, 0);
+  masks.add(row({0, 0, 0, 1, 0, 0, 0}), "c.nii", {{1, {"c", 3}}}, 0);
+  return masks;
+}
+
+Texts texts_of(const std::vector<Diagnostic>& findings) {
+  Texts all;
+  for (const Diagnostic& f : findings) all.push_back(std::to_string(f.count) + " " + f.what + ": " + f.done);
+  return all;
+}
+
+TEST(LabelMasks, LaterMasksCarveEarlierOnes) {
+  const LabelMasks::Joined joined = three(OverlapRule::later).join("masks");
+  EXPECT_EQ(joined.volume.labels, (Labels{1, 1, 2, 3, 2, 2, 0}));
+  EXPECT_EQ(joined.volume.names, (std::map<MaterialTag, std::string>{{1, "a"}, {2, "b"}, {3, "c"}}));
+  ASSERT_EQ(joined.overlaps.size(), 2u);
+  EXPECT_EQ(joined.overlaps[0].first + joined.overlaps[0].second + joined.overlaps[0].owner, "abb");
+  EXPECT_EQ(joined.overlaps[0].volume, 16);  // two voxels of 2 x 2 x 2
+  EXPECT_EQ(joined.overlaps[0].place, Vec3(14, 20, 30));
+  EXPECT_EQ(joined.overlaps[1].first + joined.overlaps[1].second, "bc");
+  EXPECT_EQ(texts_of(joined.findings), (Texts{"2 voxels in several masks, in 2 pairs, most in 'a' and 'b' "
+                                              "(2): they belong to the later one"}));
+}
+
+TEST(LabelMasks, OtherRules) {
+  EXPECT_EQ(three(OverlapRule::first).join("masks").volume.labels, (Labels{1, 1, 1, 1, 2, 2, 0}));
+  const LabelMasks::Joined shared = three(OverlapRule::material).join("masks");
+  EXPECT_EQ(shared.volume.labels, (Labels{1, 1, 4, 5, 2, 2, 0}));
+  EXPECT_EQ(shared.volume.names.at(4), "a+b");
+  EXPECT_EQ(shared.volume.names.at(5), "a+b+c");
+  EXPECT_EQ(error_of<InputError>([] { three(OverlapRule::error); }),
+            "b.nii: the masks 'a' and 'b' overlap in 2 voxels, the first at (14, 20, 30); separate them, or "
+            "let the later one keep them with --on-overlap later");
+}
+
+TEST(LabelMasks, EmptyAndCoveredMasksAreNoted) {
+  LabelMasks masks(OverlapRule::later);
+  masks.add(row({0, 1, 0}), "a.nii", {{1, {"a", 1}}}, 0);
+  masks.add(row({0, 0, 0}), "b.nii", {{0, {"b", 2}}}, 0);
+  masks.add(row({5, 5, 0}), "c.nii", {{5, {"c", 3}}}, 0);
+  const LabelMasks::Joined joined = std::move(masks).join("masks");
+  EXPECT_EQ(joined.volume.labels, (Labels{3, 3, 0}));
+  EXPECT_EQ(
+      texts_of(joined.findings),
+      (Texts{"1 voxels in several masks, in 1 pair, most in 'a' and 'c' (1): they belong to the later one",
+             "1 masks without a voxel: 'b': not in the mesh",
+             "1 masks whose voxels all belong to others: 'a': not in the mesh"}));
+  LabelMasks none(OverlapRule::later);
+  none.add(row({0, 0, 0}), "b.nii", {{0, {"b", 2}}}, 0);
+  EXPECT_EQ(error_of<NothingToMeshError>([&] { std::move(none).join("masks"); }),
+            "masks: no mask has a voxel");
+}
+
+TEST(LabelMasks, GridsMustBeEqualToRounding) {
+  LabelMasks masks(OverlapRule::later);
+  masks.add(row({1, 0, 0}), "a.nii", {{1, {"a", 1}}}, 0);
+  LabelVolume close = row({0, 1, 0});
+  close.origin[0] += 1e-3;
+  masks.add(close, "b.nii", {{1, {"b", 2}}}, 0);
+  LabelVolume shifted = row({0, 0, 1});
+  shifted.directions(0, 0) += 2e-3;
+  EXPECT_EQ(
+      error_of<InputError>([&] {
+        masks.add(shifted, "c.nii", {{1, {"c", 3}}}, 0);
+      }),
+      "c.nii: its grid, 3 x 1 x 1 voxels from (10, 20, 30) in steps of (2.002, 0, 0), (0, 2, 0), (0, 0, "
+      "2), is not that of a.nii, 3 x 1 x 1 voxels from (10, 20, 30) in steps of (2, 0, 0), (0, 2, 0), "
+      "(0, 0, 2); resample one of them to the grid of the other");
+  EXPECT_NE(error_of<InputError>([&] { masks.add(row({0, 1}), "d.nii", {{1, {"d", 4}}}, 0); }), "");
+}
+
+TEST(LabelMasks, OtherSpacesAreConverted) {
+  LabelMasks masks(OverlapRule::later);
+  masks.add(row({1, 0, 0}), "a.nii", {{1, {"a", 1}}}, 0);
+  LabelVolume other = row({0, 1, 0});
+  other.space = "left-posterior-superior";
+  other.origin = {-10, -20, 30};
+  other.directions << -2, 0, 0, 0, -2, 0, 0, 0, 2;
+  masks.add(other, "b.nrrd", {{1, {"b", 2}}}, 0);
+  const LabelMasks::Joined joined = std::move(masks).join("masks");
+  EXPECT_EQ(joined.volume.labels, (Labels{1, 2, 0}));
+  EXPECT_EQ(texts_of(joined.findings),
+            (Texts{"1 inputs in another space, left-posterior-superior: brought into that of the first one, "
+                   "right-anterior-superior"}));
+  // Equal numbers are another position there.
+  LabelVolume mirrored = row({0, 1, 0});
+  mirrored.space = "left-posterior-superior";
+  LabelMasks again(OverlapRule::later);
+  again.add(row({1, 0, 0}), "a.nii", {{1, {"a", 1}}}, 0);
+  EXPECT_NE(error_of<InputError>([&] { again.add(mirrored, "b.nrrd", {{1, {"b", 2}}}, 0); }), "");
+}
+
+TEST(LabelMasks, AMaskHasOneLabel) {
+  EXPECT_EQ(label_of_mask(row({0, 7, 7}), 0, "a.nii"), 7);
+  EXPECT_EQ(label_of_mask(row({7, 7, 7}), 7, "a.nii"), 7);
+  EXPECT_EQ(error_of<InputError>([] {
+              label_of_mask(row({0, 7, 3}), 0, "a.nii");
+            }),
+            "a.nii: has the labels 7 and 3, but each of several volumes is a mask, with one label besides 0; "
+            "give this one alone, or a mask for each label");
+}
+
+}  // namespace
+}  // namespace tetwright::label_masks_test

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Tests masks as inputs through the program: files, folders and overlapping segments.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "common/samples/samples.h"
+#include "tests/tools/program.h"
+#include "tetwright/io.h"
+
+namespace tetwright::masks_test {
+namespace {
+
+class Masks : public testing::Test {
+ protected:
+  Masks() : organs_(std::get<LabelVolume>(make_sample("organs"))) {
+    std::filesystem::create_directory(folder_ / "masks");
+    write_label_volume(organs_, path("organs.nrrd"));
+    std::string names;
+    for (const MaterialTag tag : std::set<MaterialTag>(organs_.labels.begin(), organs_.labels.end())) {
+      if (tag == 0) continue;
+      tags_.push_back(tag);
+      write_mask("masks/" + name(tag) + ".nrrd", [&](MaterialTag label) { return label == tag; });
+      names += std::to_string(tag) + " " + name(tag) + "\n";
+    }
+    write("names.txt", names);
+  }
+
+  static std::string name(MaterialTag tag) { return "part" + std::to_string(tag); }
+  std::string path(const std::string& file) const { return folder_ / file; }
+  void write(const std::string& file, const std::string& text) const {
+    write_file_atomically(path(file), text);
+  }
+  /// Writes the voxels whose labels `is_in` accepts.
+  template <class IsIn>
+  void write_mask(const std::string& file, const IsIn& is_in) const {
+    LabelVolume mask = organs_;
+    mask.names.clear();
+    mask.colours.clear();
+    for (MaterialTag& label : mask.labels) label = is_in(label) ? 1 : 0;
+    write_label_volume(mask, path(file));
+  }
+  Answer prepare(const std::string& words) const {
+    return run("prepare " + words + " --target-tets 1500 -o " + path("out.vtu") + " --stats " +
+               path("s.json"));
+  }
+  Answer mesh(const std::string& words) const {
+    return run("mesh " + words + " --voxel-size 2 -o " + path("out.vtu"));
+  }
+  nlohmann::json stats() const { return nlohmann::json::parse(contents(path("s.json"))); }
+
+  TemporaryFolder folder_;
+  LabelVolume organs_;
+  std::vector<MaterialTag> tags_;  ///< of its labels, ascending
+};
+
+TEST_F(Masks, OfAllLabelsGiveTheBytesOfTheVolume) {
+  ASSERT_EQ(mesh(path("organs.nrrd") + " --label-names " + path("names.txt")).status, 0);
+  const std::string expected = contents(path("out.vtu"));
+  const Answer folder = mesh(path("masks"));
+  EXPECT_EQ(folder.status, 0) << folder.err;
+  EXPECT_TRUE(contents(path("out.vtu")) == expected);
+  std::string forwards, backwards;
+  for (const MaterialTag tag : tags_) {
+    const std::string file = path("masks/" + name(tag) + ".nrrd");
+    forwards += file + " ";
+    backwards.insert(0, file + " ");
+  }
+  EXPECT_EQ(mesh(forwards).status, 0);
+  EXPECT_TRUE(contents(path("out.vtu")) == expected);
+  // In another order, with the tags of the file of names.
+  EXPECT_EQ(mesh(backwards + "--label-names " + path("names.txt")).status, 0);
+  EXPECT_TRUE(contents(path("out.vtu")) == expected);
+}
+
+TEST_F(Masks, HaveTheNamesOfTheirMaterials) {
+  const Answer a = prepare("--material bone=" + path("masks/part2.nrrd"));
+  EXPECT_EQ(a.status, 0) << a.err;
+  const nlohmann::json materials = stats().at("result").at("materials");
+  ASSERT_EQ(materials.size(), 1u);
+  EXPECT_NE(materials.dump().find("\"bone\""), std::string::npos) << materials;
+}
+
+TEST_F(Masks, ThatOverlapAreReported) {
+  write_mask("all.nrrd", [](MaterialTag label) { return label != 0; });
+  const std::string both = path("all.nrrd") + " " + path("masks/part2.nrrd");
+  const Answer later = prepare(both);
+  EXPECT_EQ(later.status, 0) << later.err;
+  EXPECT_NE(later.err.find("voxels in several masks, in 1 pair, most in 'all' and 'part2'"),
+            std::string::npos)
+      << later.err;
+  EXPECT_EQ(stats().at("overlaps").size(), 1u);
+  const Answer refused = prepare(both + " --on-overlap error");
+  EXPECT_EQ(refused.status, 3);
+  EXPECT_NE(refused.err.find("the masks 'all' and 'part2' overlap in "), std::string::npos) << refused.err;
+  // All of the later one belongs to the first one.
+  const Answer first = prepare(both + " --on-overlap first");
+  EXPECT_NE(first.err.find("masks whose voxels all belong to others: 'part2'"), std::string::npos)
+      << first.err;
+  EXPECT_EQ(prepare(path("organs.nrrd") + " --on-overlap first").status, 2);
+}
+
+TEST_F(Masks, ThatAreEmptyAreNoted) {
+  write_mask("masks/absent.nrrd", [](MaterialTag) { return false; });
+  write("masks/statistics.json", "{}");
+  const Answer a = mesh(path("masks"));
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_NE(a.err.find("1 masks without a voxel: 'absent' (not in the mesh)"), std::string::npos) << a.err;
+  EXPECT_NE(a.err.find("1 files that are no volumes, the first statistics.json (not read)"),
+            std::string::npos)
+      << a.err;
+  const Answer none = prepare("--material nothing=" + path("masks/absent.nrrd"));
+  EXPECT_EQ(none.status, 4);
+  EXPECT_NE(none.err.find("no mask has a voxel"), std::string::npos) << none.err;
+}
+
+TEST_F(Masks, WrongInputsAreRefused) {
+  const std::string mask = path("masks/part1.nrrd");
+  const Answer several = prepare(mask + " " + path("organs.nrrd"));
+  EXPECT_EQ(several.status, 3);
+  EXPECT_NE(several.err.find("organs.nrrd: has the labels "), std::string::npos) << several.err;
+  LabelVolume small = organs_;
+  small.origin[0] += 1;
+  for (MaterialTag& label : small.labels) label = label != 0;
+  write_label_volume(small, path("shifted.nrrd"));
+  const Answer grids = prepare(mask + " " + path("shifted.nrrd"));
+  EXPECT_EQ(grids.status, 3);
+  EXPECT_NE(grids.err.find("shifted.nrrd: its grid, "), std::string::npos) << grids.err;
+  write("two.txt", "1 part1\n");
+  const Answer names = prepare(mask + " " + path("masks/part2.nrrd") + " --label-names " + path("two.txt"));
+  EXPECT_EQ(names.status, 3);
+  EXPECT_NE(names.err.find("two.txt: has no label called 'part2'"), std::string::npos) << names.err;
+  EXPECT_EQ(prepare("--material all=" + path("masks")).status, 2);
+}
+
+TEST_F(Masks, OverlappingSegmentsAreLayers) {
+  // As 3D Slicer writes them: two segments in two layers, interleaved.
+  const std::string header =
+      "NRRD0004\ntype: unsigned char\ndimension: 4\nspace: left-posterior-superior\nsizes: 2 8 8 8\n"
+      "space directions: none (1,0,0) (0,1,0) (0,0,1)\nkinds: list domain domain domain\nencoding: raw\n"
+      "space origin: (0,0,0)\nSegment0_Name:=liver\nSegment0_LabelValue:=1\nSegment0_Layer:=0\n"
+      "Segment1_Name:=tumour\nSegment1_LabelValue:=1\nSegment1_Layer:=1\n\n";
+  std::string voxels;
+  for (int z = 0; z < 8; ++z)
+    for (int y = 0; y < 8; ++y)
+      for (int x = 0; x < 8; ++x) {
+        voxels += static_cast<char>(x < 6);
+        voxels += static_cast<char>(x >= 4 && x < 7);
+      }
+  write("s.seg.nrrd", header + voxels);
+  const Answer a = prepare(path("s.seg.nrrd"));
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_NE(a.err.find("128 voxels in several masks, in 1 pair, most in 'liver' and 'tumour' (128)"),
+            std::string::npos)
+      << a.err;
+  nlohmann::json volume = stats().at("input").at("volume");
+  ASSERT_EQ(volume.at("labels").size(), 2u);
+  EXPECT_EQ(volume.at("labels")[0].at("voxels"), 4 * 64);
+  EXPECT_EQ(volume.at("labels")[1].at("voxels"), 3 * 64);
+  write("cut.seg.nrrd", header + voxels.substr(0, 500));
+  EXPECT_EQ(prepare(path("cut.seg.nrrd")).status, 3);
+}
+
+}  // namespace
+}  // namespace tetwright::masks_test

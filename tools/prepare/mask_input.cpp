@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/prepare/mask_input.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "common/message_text.h"
+#include "common/unique_names.h"
+#include "common/utf8.h"
+#include "tetwright/error.h"
+#include "tetwright/io.h"
+
+namespace tetwright {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_layered(const Input& input) {
+  return std::holds_alternative<InputFile>(input.value) && label_layers(input.name) > 1;
+}
+
+/// A mask before it has a tag.
+struct NamedMask {
+  MaterialTag label;  ///< in its volume
+  std::string name;
+};
+
+/// The segments of a layer, by label.
+std::vector<NamedMask> segments_of(const LabelVolume& layer, MaterialTag outside) {
+  std::set<MaterialTag> labels;
+  for (const auto& [label, name] : layer.names) labels.insert(label);
+  for (const auto& [label, colour] : layer.colours) labels.insert(label);
+  // Segments may lack a name.
+  for (std::size_t i = 0; i < layer.labels.size(); ++i)
+    if (i == 0 || layer.labels[i] != layer.labels[i - 1]) labels.insert(layer.labels[i]);
+  labels.erase(outside);
+  std::vector<NamedMask> segments;
+  for (const MaterialTag label : labels) {
+    const auto name = layer.names.find(label);
+    segments.push_back({label, name != layer.names.end() && !name->second.empty()
+                                   ? name->second
+                                   : "segment_" + std::to_string(label)});
+  }
+  return segments;
+}
+
+/// Gives masks their tags.
+class MaskTags {
+ public:
+  explicit MaskTags(const LabelChoice& choice) : file_(choice.names_file) {
+    for (const auto& [tag, name] : choice.names) by_name_.emplace(name, tag);
+  }
+
+  /// \param wanted tag that the mask's file has for it; 0: none
+  MaterialTag tag_of(const std::string& name, MaterialTag wanted, const std::string& file) {
+    MaterialTag tag = wanted;
+    if (!file_.empty()) {
+      const auto found = by_name_.find(name);
+      if (found == by_name_.end())
+        throw InputError(file_, 0, "has no label called '" + name + "', the mask in " + file + "; add it");
+      tag = found->second;
+      if (tag <= 0)
+        throw InputError(file_, 0,
+                         "the label " + std::to_string(tag) + " of the mask '" + name + "' must be above 0");
+    }
+    if (tag == 0)
+      while (used_.contains(++last_)) continue;
+    if (tag == 0) tag = last_;
+    used_.insert(tag);
+    return tag;
+  }
+
+ private:
+  std::string file_;
+  std::map<std::string, MaterialTag> by_name_;
+  std::set<MaterialTag> used_;
+  MaterialTag last_ = 0;
+};
+
+/// Whether all segments of the layers have different labels, all above 0.
+bool labels_differ(const std::vector<std::vector<NamedMask>>& layers) {
+  std::set<MaterialTag> seen;
+  for (const std::vector<NamedMask>& layer : layers)
+    for (const NamedMask& segment : layer)
+      if (segment.label <= 0 || !seen.insert(segment.label).second) return false;
+  return true;
+}
+
+}  // namespace
+
+std::vector<Input> with_masks_of_folders(std::vector<Input> inputs, PrepareReport& report) {
+  std::vector<Input> all;
+  for (Input& input : inputs) {
+    std::error_code error;
+    if (!std::holds_alternative<InputFile>(input.value) || input.role != Input::Role::body ||
+        input.kind() == FileKind::volume || !fs::is_directory(input.name, error)) {
+      all.push_back(std::move(input));
+      continue;
+    }
+    std::vector<std::string> volumes, others;
+    for (const fs::directory_entry& entry : fs::directory_iterator(input.name, error)) {
+      const std::string name = entry.path().filename().string();
+      if (name.starts_with('.')) continue;
+      (file_kind(entry.path().string()) == FileKind::volume ? volumes : others)
+          .push_back(entry.path().string());
+    }
+    std::sort(volumes.begin(), volumes.end());
+    // The two files of a pair are one volume.
+    std::erase_if(volumes, [&](const std::string& file) {
+      return file.ends_with(".img") &&
+             std::binary_search(volumes.begin(), volumes.end(), fs::path(file).replace_extension(".hdr"));
+    });
+    if (volumes.empty()) {
+      all.push_back(std::move(input));
+      continue;
+    }
+    if (!input.material.empty())
+      throw UsageError(input.name +
+                       " is a folder of masks, each a material with the name of its file; leave "
+                       "out the name " +
+                       input.material);
+    std::sort(others.begin(), others.end());
+    if (!others.empty())
+      report.diagnostics.push_back(
+          {.code = DiagnosticCode::input_dropped,
+           .file = input.name,
+           .what = "files that are no volumes, the first " + fs::path(others.front()).filename().string(),
+           .count = others.size(),
+           .done = "not read"});
+    for (const std::string& file : volumes) all.push_back(Input(file).as(file_stem(file)));
+  }
+  return all;
+}
+
+bool are_masks(const std::vector<Input>& volumes) {
+  return volumes.size() > 1 || !volumes.front().material.empty() || is_layered(volumes.front());
+}
+
+LabelVolume join_masks(std::vector<Input>& volumes, LabelChoice& choice, PrepareRun& run) {
+  LabelMasks masks(run.options.bodies.overlap);
+  MaskTags tags(choice);
+  UniqueNames names(printable_name);
+  (void)names.add("outside");
+  double done = 0;
+  for (Input& input : volumes) {
+    run.progress.throw_if_stopped();
+    const std::string& file = input.name;
+    std::vector<LabelVolume> layers;
+    std::vector<std::vector<NamedMask>> of_layers;
+    const bool layered = is_layered(input);
+    if (layered) {
+      layers = read_label_layers(file);
+      for (const LabelVolume& layer : layers) of_layers.push_back(segments_of(layer, choice.outside_label));
+    } else {
+      layers.push_back(take_label_volume(input, run.seconds_waited));
+      const MaterialTag label = label_of_mask(layers.front(), choice.outside_label, file);
+      of_layers.push_back({{label, input.material.empty() ? input.material_name() : input.material}});
+    }
+    const bool keep_labels = layered && volumes.size() == 1 && labels_differ(of_layers);
+    for (std::size_t l = 0; l < layers.size(); ++l) {
+      std::map<MaterialTag, LabelMask> added;
+      for (const NamedMask& mask : of_layers[l]) {
+        const std::string name = names.add(mask.name);
+        if (name != printable_name(mask.name))
+          run.report.diagnostics.push_back({.code = DiagnosticCode::names_qualified,
+                                            .file = file,
+                                            .what = "another mask called '" + printable_name(mask.name) + "'",
+                                            .count = 1,
+                                            .done = "called '" + name + "' in the mesh"});
+        added[mask.label] = {name, tags.tag_of(name, keep_labels ? mask.label : 0, file)};
+      }
+      // A mask without voxels has the outside label, which no voxel of a mask has.
+      masks.add(std::move(layers[l]), file, added, choice.outside_label);
+    }
+    run.progress.update(++done / static_cast<double>(volumes.size()));
+  }
+  LabelMasks::Joined joined = std::move(masks).join(run.report.inputs.front());
+  run.report.overlaps = std::move(joined.overlaps);
+  run.report.diagnostics.insert(run.report.diagnostics.end(), joined.findings.begin(), joined.findings.end());
+  choice.names = joined.volume.names;
+  choice.outside_label = 0;
+  return std::move(joined.volume);
+}
+
+}  // namespace tetwright
