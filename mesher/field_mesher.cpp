@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <set>
+#include <string>
 
 #include "common/geometry/predicates.h"
 #include "common/message_text.h"
@@ -38,6 +40,25 @@ void number_box_patches(std::vector<InterfaceTriangle>& interfaces, const std::v
       if (common) t.patch = static_cast<std::uint16_t>(1 + std::countr_zero(common));
     }
   });
+}
+
+/// Names of the patches on the sides of a box, by the coordinate along which each side's axis runs most.
+/// \param axes of the box, as columns
+std::array<std::string, 6> border_names(const Eigen::Matrix3d& axes) {
+  std::array<std::string, 6> names;
+  Eigen::Matrix3d left = axes.colwise().normalized().cwiseAbs();
+  for (int named = 0; named < 3; ++named) {
+    int coordinate = 0, axis = 0;
+    left.maxCoeff(&coordinate, &axis);
+    left.row(coordinate).setConstant(-1);
+    left.col(axis).setConstant(-1);
+    for (const int upper : {0, 1}) {
+      const bool max = (upper == 1) == (axes(coordinate, axis) > 0);
+      names[static_cast<std::size_t>(2 * axis + upper)] =
+          std::string("border_") + "xyz"[coordinate] + (max ? "_max" : "_min");
+    }
+  }
+  return names;
 }
 
 TetMesh to_input_units(CutMesh cut, const MaterialField& field) {
@@ -191,8 +212,25 @@ std::shared_ptr<const ReferenceSurface> reference_of(const TetMesh& mesh,
   return field;
 }
 
+void name_border_patches(TetMesh& mesh, const GridFrame& frame) {
+  const std::array<std::string, 6> names = border_names(frame.axes);
+  std::array<std::set<MaterialTag>, 6> materials;
+  std::set<InterfacePatch> patches;
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    if (t.patch != 0 && patches.insert({t.pair(), t.patch}).second)
+      materials[t.patch - 1u].insert(t.material);
+  for (const InterfacePatch& patch : patches) {
+    const std::size_t side = patch.second - 1u;
+    const auto name = mesh.material_names.find(patch.first.first);
+    const std::string material =
+        name != mesh.material_names.end() ? name->second : std::to_string(patch.first.first);
+    mesh.patch_groups[patch] = {0, materials[side].size() == 1 ? names[side] : material + ":" + names[side]};
+  }
+}
+
 void set_mesh(CutMesh cut, std::shared_ptr<const MaterialField> field, DenseMesh& result) {
   result.mesh = to_input_units(std::move(cut), *field);
+  if (field->volume()) name_border_patches(result.mesh, field->frame());
   result.reference = reference_of(result.mesh, field);
   result.field = std::move(field);
 }

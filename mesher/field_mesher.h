@@ -72,6 +72,11 @@ struct FieldMesh {
 std::shared_ptr<const ReferenceSurface> reference_of(const TetMesh& mesh,
                                                      std::shared_ptr<const MaterialField> field);
 
+/// Names the patches 1 to 6 of `interfaces`, on the sides of a volume's box: "border_x_min" and so on for the
+/// coordinate along which the axis runs most; with the name of its material in front ("bone:border_x_min") if
+/// several reach that side.
+void name_border_patches(TetMesh& mesh, const GridFrame& frame);
+
 /// Transforms a mesh of the field to input units, with its interfaces and its reference surface.
 /// \param cut lattice units
 void set_mesh(CutMesh cut, std::shared_ptr<const MaterialField> field, DenseMesh& result);

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
+#include <string>
 
 #include "tests/mesher/checked_labels.h"
 #include "tests/mesher/label_volumes.h"
@@ -88,6 +90,46 @@ TEST(LabelBorder, AFullVolumeIsItsBox) {
       EXPECT_EQ(meshed.report.creases.segments.size(), 12u);
       EXPECT_EQ(meshed.report.creases.corners.size(), 8u);
     }
+}
+
+TEST(LabelBorder, SidesHaveNames) {
+  // The names of all faces on the border, each checked to be on the side of that name.
+  const auto names_of = [](const LabelInput& labels) {
+    const DenseMesh meshed = checked_mesh(labels, 1);
+    Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
+    for (const Vec3& p : meshed.mesh.points) {
+      low = low.cwiseMin(p);
+      high = high.cwiseMax(p);
+    }
+    std::set<std::string> names;
+    for (const InterfaceTriangle& t : meshed.mesh.interfaces) {
+      const auto group = meshed.mesh.patch_groups.find({t.pair(), t.patch});
+      EXPECT_EQ(group != meshed.mesh.patch_groups.end(), t.patch != 0);
+      if (t.patch == 0) continue;
+      const std::string& name = group->second.name;
+      names.insert(name);
+      const std::string side = name.substr(name.find("border_") + 7);
+      const int axis = side[0] - 'x';
+      for (const Index p : t.ids)
+        EXPECT_NEAR(meshed.mesh.points[p][axis], (side.ends_with("min") ? low : high)[axis], 1e-9) << name;
+    }
+    return names;
+  };
+  const std::set<std::string> all{"border_x_max", "border_x_min", "border_y_max",
+                                  "border_y_min", "border_z_max", "border_z_min"};
+  // The axes of the second volume are z, -x and -y.
+  Eigen::Matrix3d turned;
+  turned << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  for (const Eigen::Matrix3d& directions : {Eigen::Matrix3d(Eigen::Matrix3d::Identity()), turned})
+    EXPECT_EQ(names_of(make_labels(
+                  {7, 6, 9}, [](int, int, int) { return 4; }, directions, Vec3(1, 2, 3))),
+              all);
+  const LabelInput two = make_labels({8, 8, 8}, [](int x, int y, int) {
+    return y < 2 || y > 5 ? 0 : x < 4 ? 1 : 2;
+  });
+  EXPECT_EQ(names_of(two),
+            (std::set<std::string>{"border_x_min", "border_x_max", "label_1:border_z_min",
+                                   "label_2:border_z_min", "label_1:border_z_max", "label_2:border_z_max"}));
 }
 
 TEST(LabelBorder, CellsOfAThinVolumeAreNotFlat) {
