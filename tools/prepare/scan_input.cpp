@@ -105,7 +105,7 @@ LabelChoice label_choice(const LabelOptions& options) {
 }
 
 /// Uses the names in the volume's file, made unique among labels and different from the outside's name.
-void take_names(const LabelVolume& volume, LabelChoice& choice) {
+void take_names(const LabelGrid& volume, LabelChoice& choice) {
   UniqueNames unique(printable_name);
   (void)unique.add("outside");
   for (const auto& [tag, name] : volume.names)
@@ -115,10 +115,12 @@ void take_names(const LabelVolume& volume, LabelChoice& choice) {
 LabelInput read_labels(std::optional<LabelVolume> vdb_labels, Input& input, PrepareRun& run) {
   // Done before reading the volume, which takes longer.
   LabelChoice choice = label_choice(run.options.labels);
-  LabelVolume volume = vdb_labels ? std::move(*vdb_labels) : take_label_volume(input, run.seconds_waited);
-  if (run.options.labels.names_file.empty()) take_names(volume, choice);
-  run.report.material_colours = volume.colours;
-  LabelInput labels = make_label_input(std::move(volume), input.name, choice, &run.progress);
+  const std::unique_ptr<const LabelSource> source =
+      vdb_labels ? std::make_unique<MemoryLabelSource>(std::move(*vdb_labels))
+                 : take_label_source(input, run.seconds_waited);
+  if (run.options.labels.names_file.empty()) take_names(source->grid(), choice);
+  run.report.material_colours = source->grid().colours;
+  LabelInput labels = make_label_input(*source, input.name, choice, &run.progress);
   run.report.diagnostics = labels.findings;
   run.report.volume.emplace(labels);
   return labels;
