@@ -30,18 +30,6 @@ std::size_t label_index(const VoxelIndex& size, int x, int y, int z) {
          static_cast<std::size_t>(x);
 }
 
-/// Size of boxes of whole blocks, joined along the first axis, then the others.
-std::array<std::int64_t, 3> joined_blocks(const VoxelIndex& block, const VoxelIndex& size) {
-  std::array<std::int64_t, 3> box{block[0], block[1], block[2]};
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::int64_t voxels = box[0] * box[1] * box[2];
-    const std::int64_t needed = (std::int64_t{size[k]} + box[k] - 1) / box[k];
-    box[k] *= std::clamp<std::int64_t>(voxels_at_once / voxels, 1, needed);
-    if (box[k] < size[k]) break;
-  }
-  return box;
-}
-
 /// The error of the lowest item that failed. Items are taken in order, so that all lower ones have ended.
 class FirstError {
  public:
@@ -88,6 +76,53 @@ void MemoryLabelSource::read_box(const VoxelIndex& low, const VoxelIndex& high,
                        high[0] - low[0], to);
 }
 
+LabelBoxes::LabelBoxes(const LabelSource& source, std::int64_t voxels) : size_(source.grid().size) {
+  // Labels in memory have no blocks that would be decoded.
+  const VoxelIndex block = source.in_memory() ? VoxelIndex{size_[0], 1, 1} : source.block();
+  std::array<std::int64_t, 3> box{block[0], block[1], block[2]};
+  bool joined = true;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::int64_t needed = (std::int64_t{size_[k]} + box[k] - 1) / box[k];
+    if (joined) box[k] *= std::clamp<std::int64_t>(voxels / (box[0] * box[1] * box[2]), 1, needed);
+    joined &= box[k] >= size_[k];
+    box_[k] = static_cast<int>(std::min<std::int64_t>(box[k], size_[k]));
+    boxes_[k] = (size_[k] - 1) / box_[k] + 1;
+  }
+}
+
+std::size_t LabelBoxes::voxels() const { return label_count({0, 0, 0}, box_); }
+
+std::size_t LabelBoxes::workers(int slices) const {
+  const std::size_t boxes = static_cast<std::size_t>(boxes_[0]) * static_cast<std::size_t>(boxes_[1]) *
+                            static_cast<std::size_t>((slices - 1) / box_[2] + 1);
+  return std::min<std::size_t>(thread_count(), boxes);
+}
+
+void LabelBoxes::for_each(
+    int first, int last,
+    const std::function<void(const VoxelIndex&, const VoxelIndex&, unsigned)>& body) const {
+  TETWRIGHT_CHECK(first % box_[2] == 0 && first < last && last <= size_[2]);
+  const auto nx = static_cast<std::size_t>(boxes_[0]), ny = static_cast<std::size_t>(boxes_[1]);
+  const auto nz = static_cast<std::size_t>((last - first - 1) / box_[2] + 1);
+  FirstError error;
+  parallel_chunks(nx * ny * nz, [&](std::size_t item, unsigned worker) {
+    if (error.before(item)) return;
+    const std::array<std::size_t, 3> at{item % nx, item / nx % ny, item / nx / ny};
+    VoxelIndex low, high;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int end = k < 2 ? size_[k] : last;
+      low[k] = (k < 2 ? 0 : first) + static_cast<int>(at[k]) * box_[k];
+      high[k] = box_[k] < end - low[k] ? low[k] + box_[k] : end;
+    }
+    try {
+      body(low, high, worker);
+    } catch (...) {
+      error.add(item, std::current_exception());
+    }
+  });
+  error.rethrow();
+}
+
 LabelVolume read_all(const LabelSource& source, const std::string& file) {
   const LabelGrid& grid = source.grid();
   if (grid.voxels() > static_cast<std::uint64_t>(max_volume_voxels))
@@ -97,20 +132,12 @@ LabelVolume read_all(const LabelSource& source, const std::string& file) {
                          std::to_string(max_volume_voxels) + "; crop the volume or make it coarser");
   const double label_bytes = static_cast<double>(grid.voxels()) * sizeof(MaterialTag);
   require_memory(label_bytes, "the labels of " + file, "crop the volume or make it coarser");
-  const std::array<std::int64_t, 3> box = joined_blocks(source.block(), grid.size);
-  std::array<std::size_t, 3> boxes;
-  for (std::size_t k = 0; k < 3; ++k)
-    boxes[k] = static_cast<std::size_t>((grid.size[k] + box[k] - 1) / box[k]);
+  const LabelBoxes boxes(source, voxels_at_once);
   // Boxes that contain whole slices are contiguous in the result.
-  const bool slices = boxes[0] == 1 && boxes[1] == 1;
+  const bool slices = boxes.of_whole_slices();
   auto worker_bytes = static_cast<double>(source.decoding_bytes());
-  if (!slices) {
-    double box_bytes = sizeof(MaterialTag);
-    for (std::size_t k = 0; k < 3; ++k)
-      box_bytes *= static_cast<double>(std::min<std::int64_t>(box[k], grid.size[k]));
-    worker_bytes += box_bytes;
-  }
-  const std::size_t workers = std::min<std::size_t>(thread_count(), boxes[0] * boxes[1] * boxes[2]);
+  if (!slices) worker_bytes += static_cast<double>(boxes.voxels()) * sizeof(MaterialTag);
+  const std::size_t workers = boxes.workers(grid.size[2]);
   require_memory(label_bytes + static_cast<double>(workers) * worker_bytes,
                  "the labels of " + file + " and the blocks that " + std::to_string(workers) +
                      " threads decode at a time",
@@ -118,35 +145,21 @@ LabelVolume read_all(const LabelSource& source, const std::string& file) {
   LabelVolume volume;
   static_cast<LabelGrid&>(volume) = grid;
   volume.labels.resize(grid.voxels());
-  FirstError first;
-  parallel_chunks(boxes[0] * boxes[1] * boxes[2], [&](std::size_t item, unsigned /*worker*/) {
-    if (first.before(item)) return;
-    const std::array<std::size_t, 3> at{item % boxes[0], item / boxes[0] % boxes[1],
-                                        item / boxes[0] / boxes[1]};
-    VoxelIndex low, high;
-    for (std::size_t k = 0; k < 3; ++k) {
-      low[k] = static_cast<int>(static_cast<std::int64_t>(at[k]) * box[k]);
-      high[k] = static_cast<int>(std::min<std::int64_t>(low[k] + box[k], grid.size[k]));
-    }
+  boxes.for_each(0, grid.size[2], [&](const VoxelIndex& low, const VoxelIndex& high, unsigned /*worker*/) {
     const std::size_t n = label_count(low, high);
-    try {
-      if (slices) {
-        source.read(low, high, std::span(volume.labels).subspan(label_index(grid.size, 0, 0, low[2]), n));
-        return;
-      }
-      std::vector<MaterialTag> labels(n);
-      source.read(low, high, labels);
-      auto from = labels.begin();
-      for (int z = low[2]; z < high[2]; ++z)
-        for (int y = low[1]; y < high[1]; ++y, from += high[0] - low[0])
-          std::copy_n(
-              from, high[0] - low[0],
-              volume.labels.begin() + static_cast<std::ptrdiff_t>(label_index(grid.size, low[0], y, z)));
-    } catch (...) {
-      first.add(item, std::current_exception());
+    if (slices) {
+      source.read(low, high, std::span(volume.labels).subspan(label_index(grid.size, 0, 0, low[2]), n));
+      return;
     }
+    std::vector<MaterialTag> labels(n);
+    source.read(low, high, labels);
+    auto from = labels.begin();
+    for (int z = low[2]; z < high[2]; ++z)
+      for (int y = low[1]; y < high[1]; ++y, from += high[0] - low[0])
+        std::copy_n(
+            from, high[0] - low[0],
+            volume.labels.begin() + static_cast<std::ptrdiff_t>(label_index(grid.size, low[0], y, z)));
   });
-  first.rethrow();
   return volume;
 }
 

@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesher/labels/label_bricks.h"
 #include "mesher/labels/label_faces.h"
 #include "mesher/labels/label_field.h"
 #include "mesher/labels/label_thickness.h"
 #include "mesher/mesh_estimate.h"
 #include "mesher/tuning/estimate_tuning.h"
+#include "mesher/tuning/label_tuning.h"
 
 namespace tetwright {
 
@@ -18,6 +20,20 @@ double coarse_share(double cell, double adaptivity) {
   if (!(adaptivity > 0)) return 1;
   return share_of_coarse_cells(std::max(0.0, 1 - cell / EstimateTuning::Adaptivity::largest_with_coarse),
                                std::max(0.0, 1 - cell / EstimateTuning::Adaptivity::largest_with_coarsest));
+}
+
+/// \param cell edge of a finest cell, input units
+MemoryModel memory_of(const LabelInput& labels, double cell, const FaceAreas& areas) {
+  using Thickness = LabelTuning::Thickness;
+  constexpr double brick_voxels = LabelBricks::cells * LabelBricks::cells * LabelBricks::cells;
+  const auto voxels = static_cast<double>(labels.voxel_count());
+  const auto regions = static_cast<double>(labels.regions.bytes());
+  double distances = EstimateTuning::Memory::per_label_face * areas.faces +
+                     sizeof(LabelBricks::Brick) / brick_voxels * voxels;
+  if (needs_depths(labels, cell)) distances += voxels;
+  const double thin = std::min<double>(Thickness::slab_bytes, Thickness::bytes_per_voxel * voxels);
+  return {EstimateTuning::Memory::per_label_lattice_tet, regions + distances,
+          regions + std::max(thin, distances)};
 }
 
 }  // namespace
@@ -66,13 +82,11 @@ MesherEstimate estimate_mesh(const LabelInput& labels, const MesherOptions& opti
       size.lattice += share * EstimateTuning::Labels::outside_tets_per_face * outer +
                       EstimateTuning::Labels::lattice_per_thin_cell_outside * thin.outside;
   }
-  return estimate_of(size, label_memory(labels), options);
+  return estimate_of(size, memory_of(labels, h, areas), options);
 }
 
-MemoryModel label_memory(const LabelInput& labels) {
-  const auto voxels = static_cast<double>(labels.voxel_count());
-  return {EstimateTuning::Memory::per_label_lattice_tet, EstimateTuning::Memory::per_voxel * voxels,
-          EstimateTuning::Memory::per_voxel_read * voxels};
+MemoryModel label_memory(const LabelInput& labels, double cell) {
+  return memory_of(labels, cell, face_areas(labels));
 }
 
 }  // namespace tetwright

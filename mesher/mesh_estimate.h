@@ -37,8 +37,9 @@ struct MemoryModel {
   double before = 0;  ///< peak before there is an octree
 };
 
-/// The memory model of segmented volumes.
-MemoryModel label_memory(const LabelInput& labels);
+/// The memory model of segmented volumes that have been read. Parallel over the voxels.
+/// \param cell edge of a finest cell, input units
+MemoryModel label_memory(const LabelInput& labels, double cell);
 
 /// The tets and memory of a mesh of this size.
 MesherEstimate estimate_of(const MeshSize& size, const MemoryModel& memory, const MesherOptions& options);

@@ -135,12 +135,14 @@ const LabelVolume& organs() {
 }
 
 void choose_labels(benchmark::State& state) {
-  repeatedly(state, [&] { benchmark::DoNotOptimize(make_label_input(organs(), "organs", {}, nullptr)); });
+  repeatedly(state, [&] {
+    benchmark::DoNotOptimize(make_label_input(MemoryLabelSource(organs()), "organs", {}, nullptr));
+  });
 }
 TETWRIGHT_CI(choose_labels, "prepare_labels");
 
 void mesh_organs(benchmark::State& state) {
-  const LabelInput labels = make_label_input(organs(), "organs", {}, nullptr);
+  const LabelInput labels = make_label_input(MemoryLabelSource(organs()), "organs", {}, nullptr);
   MesherOptions options;
   options.voxel_size = default_cell_size(labels);
   run_mesher(state, [&] { return mesh_labels(labels, options, nullptr); });

@@ -14,11 +14,11 @@ CreaseCurves border_creases(const LabelInput& labels) {
       const int b = (axis + 1) % 3, c = (axis + 2) % 3;
       const bool upper_b = edge & 1, upper_c = edge >> 1;
       const auto region = [&](int i) {
-        std::array<std::size_t, 3> at{};
+        VoxelIndex at{};
         at[axis] = i;
         at[b] = upper_b ? n[b] - 1 : 0;
         at[c] = upper_c ? n[c] - 1 : 0;
-        return labels.regions[(at[2] * n[1] + at[1]) * n[0] + at[0]];
+        return labels.regions.at(at[0], at[1], at[2]);
       };
       const auto place = [&](double i) {
         Vec3 index;

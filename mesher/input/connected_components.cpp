@@ -2,50 +2,100 @@
 #include "mesher/input/connected_components.h"
 
 #include <algorithm>
-#include <cstdint>
 #include <limits>
 #include <queue>
-#include <span>
 
 #include "common/mesh/disjoint_sets.h"
-#include "common/parallel/parallel_sort.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 
 namespace {
 
-/// The islands of a volume, as sets of runs: consecutive equal voxels along the first axis. Runs are numbered
-/// in the order of their voxels, so the first run of an island contains its lowest voxel.
+/// Numbers of voxels end here.
+constexpr Index many_voxels = std::numeric_limits<Index>::max();
+
+Index sum_of_voxels(Index a, Index b) { return a > many_voxels - b ? many_voxels : a + b; }
+
+/// The runs of a volume: consecutive equal voxels along the first axis, in the order of their voxels.
+struct Runs {
+  Runs(const RegionGrid& regions, const Progress* progress);
+
+  std::uint64_t count = 0;
+  std::vector<Index> of_rows;          ///< first run of each row, then `count`; empty if too many
+  std::vector<Index> starts;           ///< by run: its first voxel along the row; then 0
+  std::vector<RegionIndex> of_region;  ///< by run
+};
+
+Runs::Runs(const RegionGrid& regions, const Progress* progress) {
+  const auto width = static_cast<std::size_t>(regions.size()[0]);
+  const auto rows = static_cast<std::size_t>(regions.size()[1]);
+  const auto slices = static_cast<std::size_t>(regions.size()[2]);
+  /// Calls `body(row, x, region)` for each run of the volume; rows of different slices concurrently.
+  const auto for_each_run = [&](const auto& body) {
+    parallel_for(0, slices, 1, [&](std::size_t begin, std::size_t end) {
+      std::vector<RegionIndex> slice(width * rows);
+      for (std::size_t z = begin; z < end; ++z) {
+        if (progress) progress->throw_if_stopped();
+        regions.read_slices(static_cast<int>(z), static_cast<int>(z + 1), slice);
+        for (std::size_t y = 0; y < rows; ++y) {
+          const RegionIndex* const r = slice.data() + y * width;
+          for (std::size_t x = 0; x < width; ++x)
+            if (x == 0 || r[x] != r[x - 1]) body(z * rows + y, static_cast<Index>(x), r[x]);
+        }
+      }
+    });
+  };
+  of_rows.assign(rows * slices + 1, 0);
+  for_each_run([&](std::size_t row, Index, RegionIndex) { ++of_rows[row]; });
+  for (const Index n : of_rows) count += n;
+  if (count >= no_index) {
+    of_rows.clear();
+    return;
+  }
+  Index first = 0;
+  for (Index& n : of_rows) first += std::exchange(n, first);
+  starts.resize(count + 1, 0);
+  of_region.resize(count);
+  std::vector<Index> next(of_rows.begin(), of_rows.end() - 1);
+  for_each_run([&](std::size_t row, Index x, RegionIndex region) {
+    const Index run = next[row]++;
+    starts[run] = x;
+    of_region[run] = region;
+  });
+}
+
+/// The islands of a volume, as sets of runs. Runs are numbered in the order of their voxels, so the first run
+/// of an island contains its lowest voxel.
 class Islands {
  public:
-  Islands(std::vector<RegionIndex>& regions, const std::array<int, 3>& size, const Progress* progress)
-      : regions_(regions),
-        width_(static_cast<std::size_t>(size[0])),
-        plane_(width_ * static_cast<std::size_t>(size[1])),
+  /// \pre there are not too many runs
+  Islands(Runs runs, const VoxelIndex& size, const Progress* progress)
+      : runs_(std::move(runs)),
+        width_(static_cast<Index>(size[0])),
+        rows_(static_cast<std::size_t>(size[1])),
+        slices_(static_cast<std::size_t>(size[2])),
         progress_(progress),
-        starts_(find_runs()),
-        sets_(starts_.size() - 1) {
+        sets_(runs_.count) {
     unite_neighbours();
     count_voxels();
   }
 
   std::size_t islands() const { return islands_; }
   Index largest() const { return largest_; }
-  std::vector<MergedIsland> merge(Index min_voxels);
+  /// \param regions receives the regions of merged islands
+  std::vector<MergedIsland> merge(Index min_voxels, RegionGrid& regions);
   /// The number of islands of each region, without islands of the outside that reach the border.
-  std::vector<std::size_t> parts(std::size_t regions, std::vector<Index>* smallest = nullptr);
+  std::vector<std::size_t> parts(std::size_t regions, std::vector<std::uint64_t>* smallest = nullptr);
   /// Unites islands of one region that touch in an edge or a corner.
   void unite_touching();
 
  private:
-  using Span = std::pair<std::size_t, std::size_t>;  ///< voxels from first to before second
-
-  std::vector<Index> find_runs() const;
   void unite_neighbours();
-  void unite_across(std::size_t begin, std::size_t end, std::size_t shift);
-  void unite_rows(std::size_t here, std::size_t there);
+  void unite_rows(std::size_t row, std::size_t other, bool touching);
+  void unite_slices(std::size_t z);
   void count_voxels();
-  bool at_border(Index run) const;
+  bool at_border(std::size_t row, Index run) const;
   void enlarge_outside(Index min_voxels);
   void list_small(Index min_voxels);
   void collect_runs(Index island);
@@ -55,30 +105,51 @@ class Islands {
     if (progress_) progress_->throw_if_stopped();
   }
 
-  Index runs() const { return static_cast<Index>(starts_.size() - 1); }
-  Index run_of(std::size_t voxel) const {
-    return static_cast<Index>(std::upper_bound(starts_.begin(), starts_.end(), voxel) - starts_.begin() - 1);
+  Index count() const { return static_cast<Index>(runs_.count); }
+  Index start(Index run) const { return runs_.starts[run]; }
+  /// The voxel after the last one, along the row.
+  Index end(Index run) const {
+    const Index next = runs_.starts[run + 1];
+    return next == 0 ? width_ : next;
   }
-  RegionIndex& region_of(Index run) const { return regions_[starts_[run]]; }
+  RegionIndex region_of(Index run) const { return runs_.of_region[run]; }
+  std::size_t row_of(Index run) const {
+    return static_cast<std::size_t>(std::upper_bound(runs_.of_rows.begin(), runs_.of_rows.end(), run) -
+                                    runs_.of_rows.begin() - 1);
+  }
+  std::uint64_t first_voxel(Index run) const { return std::uint64_t{row_of(run)} * width_ + start(run); }
 
-  /// Calls `body(begin, end)` for the ranges of voxels that share a face with the run: one voxel beyond each
-  /// end, then the adjacent range in each neighbouring row.
+  /// Calls `body(row, run)` for all runs in order.
+  template <class Body>
+  void for_each_run(Body&& body) const {
+    for (std::size_t row = 0; row + 1 < runs_.of_rows.size(); ++row)
+      for (Index run = runs_.of_rows[row]; run < runs_.of_rows[row + 1]; ++run) body(row, run);
+  }
+
+  /// Calls `body(run, faces)` for all runs that share voxel faces with a run.
   template <class Body>
   void for_each_contact(Index run, Body&& body) const {
-    const std::size_t begin = starts_[run], end = starts_[run + 1];
-    if (begin % width_ != 0) body(begin - 1, begin);
-    if (end % width_ != 0) body(end, end + 1);
-    const std::size_t in_plane = begin % plane_;
-    if (in_plane >= width_) body(begin - width_, end - width_);
-    if (in_plane + width_ < plane_) body(begin + width_, end + width_);
-    if (begin >= plane_) body(begin - plane_, end - plane_);
-    if (begin + plane_ < regions_.size()) body(begin + plane_, end + plane_);
+    const std::size_t row = row_of(run), y = row % rows_, z = row / rows_;
+    const Index from = start(run), to = end(run);
+    if (from > 0) body(run - 1, Index{1});
+    if (to < width_) body(run + 1, Index{1});
+    const auto visit = [&](std::size_t other) {
+      const auto first = runs_.starts.begin() + runs_.of_rows[other];
+      const auto last = runs_.starts.begin() + runs_.of_rows[other + 1];
+      auto at = static_cast<Index>(std::upper_bound(first, last, from) - runs_.starts.begin() - 1);
+      for (; at < runs_.of_rows[other + 1] && start(at) < to; ++at)
+        body(at, std::min(end(at), to) - std::max(start(at), from));
+    };
+    if (y > 0) visit(row - 1);
+    if (y + 1 < rows_) visit(row + 1);
+    if (z > 0) visit(row - rows_);
+    if (z + 1 < slices_) visit(row + rows_);
   }
 
-  std::vector<RegionIndex>& regions_;
-  std::size_t width_, plane_;  ///< voxels of a row and of a plane
+  Runs runs_;
+  Index width_;                ///< voxels of a row
+  std::size_t rows_, slices_;  ///< rows of a slice
   const Progress* progress_;
-  std::vector<Index> starts_;  ///< first voxel of each run, then the number of voxels
   DisjointSets sets_;          ///< of runs
   std::vector<Index> voxels_;  ///< at the root of each island
   std::size_t islands_ = 0;
@@ -86,71 +157,62 @@ class Islands {
   std::vector<Index> next_;              ///< another run of the same small island, in a ring
   std::vector<Index> small_;             ///< roots of small islands, ascending
   std::vector<Index> island_runs_;       ///< of the island being merged
-  std::vector<std::size_t> faces_;       ///< by region, 0 between uses
+  std::vector<std::uint64_t> faces_;     ///< by region, 0 between uses
   std::vector<RegionIndex> neighbours_;  ///< regions with faces
 };
 
-std::vector<Index> Islands::find_runs() const {
-  const std::size_t rows = regions_.size() / width_;
-  const std::size_t rows_at_once = std::max<std::size_t>(1, (1 << 16) / width_);
-  std::vector<Index> starts =
-      parallel_collect<Index>(0, rows, rows_at_once, [&](std::size_t begin, std::size_t end, auto& out) {
-        throw_if_stopped();
-        for (std::size_t row = begin; row < end; ++row) {
-          const RegionIndex* const r = regions_.data() + row * width_;
-          out.push_back(static_cast<Index>(row * width_));
-          for (std::size_t x = 1; x < width_; ++x)
-            if (r[x] != r[x - 1]) out.push_back(static_cast<Index>(row * width_ + x));
-        }
-      });
-  starts.push_back(static_cast<Index>(regions_.size()));
-  return starts;
-}
-
-/// Unites the runs of the voxels in [begin, end), which are whole rows, with the runs `shift` voxels before
-/// them.
-void Islands::unite_across(std::size_t begin, std::size_t end, std::size_t shift) {
-  if (begin >= end) return;
-  Index here = run_of(begin), there = run_of(begin - shift);
-  while (starts_[here] < end) {
-    if (region_of(here) == region_of(there)) sets_.unite(here, there);
-    const std::size_t here_end = starts_[here + 1], there_end = starts_[there + 1] + shift;
-    if (here_end <= there_end) ++here;
-    if (there_end <= here_end) ++there;
+/// Unites the runs of two rows that overlap, or with `touching` also those that would after a shift by one
+/// voxel along the row.
+void Islands::unite_rows(std::size_t row, std::size_t other, bool touching) {
+  Index a = runs_.of_rows[row], b = runs_.of_rows[other];
+  const Index a_last = runs_.of_rows[row + 1], b_last = runs_.of_rows[other + 1];
+  while (a < a_last && b < b_last) {
+    if (region_of(a) == region_of(b)) sets_.unite(a, b);
+    const Index a_end = end(a), b_end = end(b);
+    // If both end together, the next run of each touches the current run of the other.
+    if (touching && a_end == b_end && a_end < width_) {
+      if (region_of(a + 1) == region_of(b)) sets_.unite(a + 1, b);
+      if (region_of(a) == region_of(b + 1)) sets_.unite(a, b + 1);
+    }
+    if (a_end <= b_end) ++a;
+    if (b_end <= a_end) ++b;
   }
 }
 
+/// Unites the runs of a slice with those of the slice before it.
+void Islands::unite_slices(std::size_t z) {
+  for (std::size_t row = z * rows_; row < (z + 1) * rows_; ++row) unite_rows(row, row - rows_, false);
+}
+
 void Islands::unite_neighbours() {
-  const std::size_t planes = regions_.size() / plane_;
-  const std::size_t slabs = std::min<std::size_t>(planes, 4 * thread_count());
-  const auto slab_begin = [&](std::size_t slab) { return slab * planes / slabs; };
+  const std::size_t slabs = std::min<std::size_t>(slices_, 4 * thread_count());
+  const auto slab_begin = [&](std::size_t slab) { return slab * slices_ / slabs; };
   // The smaller root wins, so slabs are independent until they are joined.
   parallel_for(0, slabs, 1, [&](std::size_t first, std::size_t last) {
     for (std::size_t slab = first; slab < last; ++slab)
       for (std::size_t z = slab_begin(slab); z < slab_begin(slab + 1); ++z) {
         throw_if_stopped();
-        unite_across(z * plane_ + width_, (z + 1) * plane_, width_);
-        if (z > slab_begin(slab)) unite_across(z * plane_, (z + 1) * plane_, plane_);
+        for (std::size_t row = z * rows_ + 1; row < (z + 1) * rows_; ++row) unite_rows(row, row - 1, false);
+        if (z > slab_begin(slab)) unite_slices(z);
       }
   });
-  for (std::size_t slab = 1; slab < slabs; ++slab)
-    unite_across(slab_begin(slab) * plane_, (slab_begin(slab) + 1) * plane_, plane_);
+  for (std::size_t slab = 1; slab < slabs; ++slab) unite_slices(slab_begin(slab));
 }
 
 void Islands::count_voxels() {
-  voxels_.assign(runs(), 0);
-  for (Index run = 0; run < runs(); ++run) {
+  voxels_.assign(count(), 0);
+  for (Index run = 0; run < count(); ++run) {
     const Index root = sets_.root(run);
     islands_ += root == run;
-    voxels_[root] += starts_[run + 1] - starts_[run];
+    voxels_[root] = sum_of_voxels(voxels_[root], end(run) - start(run));
     largest_ = std::max(largest_, voxels_[root]);
   }
 }
 
 /// Finds the small islands and links the runs of each.
 void Islands::list_small(Index min_voxels) {
-  next_.resize(runs());
-  for (Index run = 0; run < runs(); ++run) {
+  next_.resize(count());
+  for (Index run = 0; run < count(); ++run) {
     const Index root = sets_.root(run);
     if (root != run) {
       next_[run] = next_[root];
@@ -174,9 +236,11 @@ RegionIndex Islands::max_shared() {
   const RegionIndex own = region_of(island_runs_[0]);
   neighbours_.clear();
   for (Index run : island_runs_)
-    for_each_contact(run, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v)
-        if (const RegionIndex r = regions_[v]; r != own && faces_[r]++ == 0) neighbours_.push_back(r);
+    for_each_contact(run, [&](Index other, Index faces) {
+      const RegionIndex r = region_of(other);
+      if (r == own) return;
+      if (faces_[r] == 0) neighbours_.push_back(r);
+      faces_[r] += faces;
     });
   // The voxels around the island are in other regions, and the island is not the whole volume, since another
   // island is larger.
@@ -192,8 +256,7 @@ void Islands::join(Index a, Index b, Index min_voxels) {
   a = sets_.root(a);
   b = sets_.root(b);
   if (a == b) return;
-  const auto total = static_cast<Index>(
-      std::min<std::uint64_t>(std::uint64_t{voxels_[a]} + voxels_[b], std::numeric_limits<Index>::max()));
+  const Index total = sum_of_voxels(voxels_[a], voxels_[b]);
   // Swapping successors joins two rings. Large islands need no ring.
   if (total < min_voxels) std::swap(next_[a], next_[b]);
   sets_.unite(a, b);
@@ -201,31 +264,29 @@ void Islands::join(Index a, Index b, Index min_voxels) {
 }
 
 /// Axes with a single voxel have no border, since a slice is an image.
-bool Islands::at_border(Index run) const {
-  const std::size_t begin = starts_[run], end = starts_[run + 1], voxels = regions_.size();
-  const std::size_t in_plane = begin % plane_;
-  return (width_ > 1 && (begin % width_ == 0 || end % width_ == 0)) ||
-         (plane_ > width_ && (in_plane < width_ || in_plane + width_ >= plane_)) ||
-         (voxels > plane_ && (begin < plane_ || begin + plane_ >= voxels));
+bool Islands::at_border(std::size_t row, Index run) const {
+  const auto first_or_last = [](std::size_t at, std::size_t n) { return n > 1 && (at == 0 || at + 1 == n); };
+  return (width_ > 1 && (start(run) == 0 || end(run) == width_)) || first_or_last(row % rows_, rows_) ||
+         first_or_last(row / rows_, slices_);
 }
 
 /// Counts islands of the outside that touch the border as large: they continue beyond it.
 void Islands::enlarge_outside(Index min_voxels) {
-  for (Index run = 0; run < runs(); ++run) {
-    if (region_of(run) != outside_region || !at_border(run)) continue;
+  for_each_run([&](std::size_t row, Index run) {
+    if (region_of(run) != outside_region || !at_border(row, run)) return;
     Index& voxels = voxels_[sets_.root(run)];
     voxels = std::max(voxels, min_voxels);
-  }
+  });
 }
 
-std::vector<MergedIsland> Islands::merge(Index min_voxels) {
+std::vector<MergedIsland> Islands::merge(Index min_voxels, RegionGrid& regions) {
   enlarge_outside(min_voxels);
   list_small(min_voxels);
   std::vector<MergedIsland> merged;
   merged.reserve(small_.size());
   for (Index island : small_) {
     const RegionIndex region = region_of(island);
-    merged.push_back({starts_[island], voxels_[island], region, region});
+    merged.push_back({first_voxel(island), voxels_[island], region, region});
   }
   faces_.assign(on_interface + std::size_t{1}, 0);
 
@@ -235,6 +296,7 @@ std::vector<MergedIsland> Islands::merge(Index min_voxels) {
   entries.reserve(small_.size());
   for (Index island : small_) entries.emplace_back(voxels_[island], island);
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue({}, std::move(entries));
+  std::vector<Index> changed;  // runs
   for (std::size_t step = 0; !queue.empty(); ++step) {
     if (step % 4096 == 0) throw_if_stopped();
     const auto [count, island] = queue.top();
@@ -243,86 +305,75 @@ std::vector<MergedIsland> Islands::merge(Index min_voxels) {
     if (!sets_.is_root(island) || voxels_[island] != count) continue;
     collect_runs(island);
     const RegionIndex region = max_shared();
-    for (Index run : island_runs_)
-      std::fill(regions_.begin() + starts_[run], regions_.begin() + starts_[run + 1], region);
+    for (Index run : island_runs_) runs_.of_region[run] = region;
+    changed.insert(changed.end(), island_runs_.begin(), island_runs_.end());
     // The smallest island comes first, so it never joins a smaller one and its size at least doubles. A voxel
     // is therefore visited at most log2(min_voxels) times.
     for (Index run : island_runs_)
-      for_each_contact(run, [&](std::size_t begin, std::size_t end) {
-        for (Index other = run_of(begin); starts_[other] < end; ++other)
-          if (region_of(other) == region) join(run, other, min_voxels);
+      for_each_contact(run, [&](Index other, Index) {
+        if (region_of(other) == region) join(run, other, min_voxels);
       });
     const Index root = sets_.root(island);
-    if (region == outside_region &&
-        std::any_of(island_runs_.begin(), island_runs_.end(), [&](Index run) { return at_border(run); }))
+    if (region == outside_region && std::any_of(island_runs_.begin(), island_runs_.end(),
+                                                [&](Index run) { return at_border(row_of(run), run); }))
       voxels_[root] = std::max(voxels_[root], min_voxels);
     if (voxels_[root] < min_voxels) queue.emplace(voxels_[root], root);
   }
-  for (MergedIsland& m : merged) m.to = regions_[m.voxel];
+  for (const Index run : changed) {
+    const std::size_t row = row_of(run);
+    regions.fill({static_cast<int>(start(run)), static_cast<int>(row % rows_), static_cast<int>(row / rows_)},
+                 static_cast<int>(end(run) - start(run)), region_of(run));
+  }
+  for (std::size_t i = 0; i < merged.size(); ++i) merged[i].to = region_of(small_[i]);
   std::erase_if(merged, [](const MergedIsland& m) { return m.from == m.to; });
   return merged;
 }
 
-std::vector<std::size_t> Islands::parts(std::size_t regions, std::vector<Index>* smallest) {
+std::vector<std::size_t> Islands::parts(std::size_t regions, std::vector<std::uint64_t>* smallest) {
   // The mesh of a slice ends above and below it, and so does the outside.
-  const bool slice = width_ == 1 || plane_ == width_ || regions_.size() == plane_;
-  std::vector<std::uint8_t> reaches_border(runs(), 0);
-  for (Index run = 0; run < runs(); ++run)
-    if (region_of(run) == outside_region && (slice || at_border(run))) reaches_border[sets_.root(run)] = 1;
+  const bool slice = width_ == 1 || rows_ == 1 || slices_ == 1;
+  std::vector<std::uint8_t> reaches_border(count(), 0);
+  for_each_run([&](std::size_t row, Index run) {
+    if (region_of(run) == outside_region && (slice || at_border(row, run)))
+      reaches_border[sets_.root(run)] = 1;
+  });
   std::vector<std::size_t> parts(regions, 0);
-  std::vector<Index> min_sizes(regions, no_index);  // voxels
-  for (Index run = 0; run < runs(); ++run) {
+  std::vector<Index> min_sizes(regions, 0), runs(regions, no_index);  // of the smallest parts
+  for (Index run = 0; run < count(); ++run) {
     if (!sets_.is_root(run) || reaches_border[run]) continue;
     const RegionIndex region = region_of(run);
     ++parts[region];
-    if (!smallest || voxels_[run] >= min_sizes[region]) continue;
+    if (runs[region] != no_index && voxels_[run] >= min_sizes[region]) continue;
     min_sizes[region] = voxels_[run];
-    (*smallest)[region] = starts_[run];
+    runs[region] = run;
   }
+  for (std::size_t r = 0; smallest && r < regions; ++r)
+    if (runs[r] != no_index) (*smallest)[r] = first_voxel(runs[r]);
   return parts;
 }
 
-/// Unites runs of two rows, given by their first voxels, that overlap or would overlap after a shift by one
-/// voxel along the row.
-void Islands::unite_rows(std::size_t here, std::size_t there) {
-  const std::size_t here_end = here + width_, there_end = there + width_;
-  Index a = run_of(here), b = run_of(there);
-  while (starts_[a] < here_end && starts_[b] < there_end) {
-    const std::size_t a_from = starts_[a] - here, a_to = starts_[a + 1] - here;
-    const std::size_t b_from = starts_[b] - there, b_to = starts_[b + 1] - there;
-    if (a_from <= b_to && b_from <= a_to && region_of(a) == region_of(b)) sets_.unite(a, b);
-    // If both end together, the next run of each touches the current run of the other.
-    if (a_to == b_to) {
-      if (a_to < width_ && region_of(a + 1) == region_of(b)) sets_.unite(a + 1, b);
-      if (a_to < width_ && region_of(a) == region_of(b + 1)) sets_.unite(a, b + 1);
-    }
-    if (a_to <= b_to) ++a;
-    if (b_to <= a_to) ++b;
-  }
-}
-
 void Islands::unite_touching() {
-  const std::size_t rows = plane_ / width_, planes = regions_.size() / plane_;
-  for (std::size_t z = 0; z < planes; ++z) {
+  for (std::size_t z = 0; z < slices_; ++z) {
     throw_if_stopped();
-    for (std::size_t y = 0; y < rows; ++y) {
-      const std::size_t row = z * plane_ + y * width_;
-      if (y > 0) unite_rows(row, row - width_);
+    for (std::size_t y = 0; y < rows_; ++y) {
+      const std::size_t row = z * rows_ + y;
+      if (y > 0) unite_rows(row, row - 1, true);
       if (z == 0) continue;
-      unite_rows(row, row - plane_);
-      if (y > 0) unite_rows(row, row - plane_ - width_);
-      if (y + 1 < rows) unite_rows(row, row - plane_ + width_);
+      unite_rows(row, row - rows_, true);
+      if (y > 0) unite_rows(row, row - rows_ - 1, true);
+      if (y + 1 < rows_) unite_rows(row, row - rows_ + 1, true);
     }
   }
 }
 
 }  // namespace
 
-std::vector<RegionParts> count_parts(std::vector<RegionIndex>& regions, const std::array<int, 3>& size,
-                                     std::size_t count, const Progress* progress) {
-  TETWRIGHT_CHECK(!regions.empty() && regions.size() < no_index);
-  Islands islands(regions, size, progress);
-  std::vector<Index> smallest(count, no_index);
+std::vector<RegionParts> count_parts(const RegionGrid& regions, std::size_t count, const Progress* progress) {
+  TETWRIGHT_CHECK(regions.voxels() > 0);
+  Runs runs(regions, progress);
+  if (runs.of_rows.empty()) return {};
+  Islands islands(std::move(runs), regions.size(), progress);
+  std::vector<std::uint64_t> smallest(count, no_voxel);
   const std::vector<std::size_t> by_faces = islands.parts(count, &smallest);
   islands.unite_touching();
   const std::vector<std::size_t> touching = islands.parts(count);
@@ -331,15 +382,17 @@ std::vector<RegionParts> count_parts(std::vector<RegionIndex>& regions, const st
   return parts;
 }
 
-IslandMerging merge_small_islands(std::vector<RegionIndex>& regions, const std::array<int, 3>& size,
-                                  std::size_t min_voxels, const Progress* progress) {
+IslandMerging merge_small_islands(RegionGrid& regions, std::size_t min_voxels, const Progress* progress) {
   IslandMerging result;
-  if (min_voxels <= 1 || regions.empty()) return result;
-  TETWRIGHT_CHECK(regions.size() < no_index);
-  Islands islands(regions, size, progress);
+  if (min_voxels <= 1 || regions.voxels() == 0) return result;
+  Runs runs(regions, progress);
+  result.runs = runs.count;
+  if (runs.of_rows.empty()) return result;
+  Islands islands(std::move(runs), regions.size(), progress);
+  const auto min = static_cast<Index>(std::min<std::size_t>(min_voxels, many_voxels));
   result.islands = islands.islands();
-  result.none_reaches = islands.largest() < min_voxels;
-  if (!result.none_reaches) result.merged = islands.merge(static_cast<Index>(min_voxels));
+  result.none_reaches = islands.largest() < min;
+  if (!result.none_reaches) result.merged = islands.merge(min, regions);
   return result;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "tetwright/mesher_input.h"
@@ -12,12 +12,15 @@ namespace tetwright {
 
 /// An island that was merged into another region.
 struct MergedIsland {
-  Index voxel = 0;   ///< its lowest voxel
-  Index voxels = 0;  ///< number of its voxels before any merge
+  std::uint64_t voxel = 0;  ///< its lowest voxel
+  Index voxels = 0;         ///< number of its voxels before any merge
   RegionIndex from = 0, to = 0;
 };
 
 struct IslandMerging {
+  /// Runs of equal voxels along the first axis. With more than 2^32 - 2 of them nothing was merged or
+  /// counted.
+  std::uint64_t runs = 0;
   std::size_t islands = 0;    ///< number in the volume before merging; 0 if not counted
   bool none_reaches = false;  ///< true if no island has `min_voxels` voxels, so nothing was merged
   /// By ascending voxel. Omits islands that ended up in their own region again.
@@ -33,27 +36,30 @@ struct IslandMerging {
 /// islands at the border of the volume continue beyond it and are never small. Axes of a single voxel have no
 /// border.
 ///
-/// Takes twelve bytes for each run of equal voxels along the first axis, and O(voxels) time. The result does
-/// not depend on the number of threads.
-/// \param regions first axis fastest, fewer than 2^32 - 1 voxels
+/// Takes 18 bytes for each run of equal voxels along the first axis, and O(voxels) time. The result does not
+/// depend on the number of threads.
+/// \param min_voxels counts as 2^32 - 1 if it is more
 /// \param progress may be null
 /// \throws Interrupted
-IslandMerging merge_small_islands(std::vector<RegionIndex>& regions, const std::array<int, 3>& size,
-                                  std::size_t min_voxels, const Progress* progress);
+IslandMerging merge_small_islands(RegionGrid& regions, std::size_t min_voxels, const Progress* progress);
+
+/// No voxel.
+inline constexpr std::uint64_t no_voxel = UINT64_MAX;
 
 /// Numbers of parts of a region, connected by voxel faces or touching at least at a corner. Voxels do not
 /// determine whether parts that touch are connected, so a smooth region may have any number of parts between
 /// the two.
 struct RegionParts {
   std::size_t touching = 0, by_faces = 0;
-  Index smallest = no_index;  ///< lowest voxel of the smallest part by faces, if any
+  /// Lowest voxel of the smallest part by faces, if any; parts of 2^32 - 1 voxels and more count as equal.
+  std::uint64_t smallest = no_voxel;
 };
 
 /// Counts the parts of regions 0 to `count` - 1. For the outside, counts only parts that neither reach the
 /// border of the volume nor touch one that does; in a slice all parts of the outside reach it. Memory and
 /// time as for merge_small_islands().
+/// \return nothing if there are more than 2^32 - 2 runs of equal voxels
 /// \throws Interrupted
-std::vector<RegionParts> count_parts(std::vector<RegionIndex>& regions, const std::array<int, 3>& size,
-                                     std::size_t count, const Progress* progress);
+std::vector<RegionParts> count_parts(const RegionGrid& regions, std::size_t count, const Progress* progress);
 
 }  // namespace tetwright

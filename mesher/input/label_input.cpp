@@ -3,12 +3,10 @@
 
 #include <algorithm>
 #include <optional>
-#include <set>
 #include <tuple>
-#include <unordered_map>
 
-#include "common/parallel/parallel_sort.h"
 #include "mesher/input/connected_components.h"
+#include "mesher/input/label_regions.h"
 #include "mesher/tuning/input_tuning.h"
 #include "tetwright/error.h"
 
@@ -17,7 +15,7 @@ namespace tetwright {
 namespace {
 
 using LabelRange = std::pair<MaterialTag, MaterialTag>;
-using LabelCount = std::pair<MaterialTag, std::size_t>;
+using LabelCount = std::pair<MaterialTag, std::uint64_t>;
 
 std::string counted(std::size_t n, const std::string& noun) {
   return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
@@ -62,77 +60,27 @@ class Chosen {
   std::vector<LabelRange> ranges_;
 };
 
-/// Calls `body(begin, end)` for each run of equal labels in [begin, end).
-template <class Body>
-void for_each_run(const std::vector<MaterialTag>& labels, std::size_t begin, std::size_t end, Body&& body) {
-  for (std::size_t i = begin, j; i < end; i = j) {
-    for (j = i + 1; j < end && labels[j] == labels[i];) ++j;
-    body(i, j);
-  }
-}
-
-/// The chosen labels that occur, ascending, with their numbers of voxels.
-std::vector<LabelCount> count_labels(const std::vector<MaterialTag>& labels, const Chosen& chosen,
-                                     const std::string& file) {
-  const auto check = [&](std::size_t n) {
-    if (n > InputTuning::Limits::max_materials)
-      throw InputError(file, 0,
-                       "has more than " + std::to_string(InputTuning::Limits::max_materials) +
-                           " labels; choose fewer with --labels, if these are labels and not gray values");
-  };
-  std::vector<LabelCount> found = parallel_collect<LabelCount>(
-      0, labels.size(), InputGrains::voxels, [&](std::size_t begin, std::size_t end, auto& out) {
-        std::unordered_map<MaterialTag, std::size_t> counts;
-        for_each_run(labels, begin, end, [&](std::size_t i, std::size_t j) {
-          if (!chosen(labels[i])) return;
-          counts[labels[i]] += j - i;
-          check(counts.size());
-        });
-        out.assign(counts.begin(), counts.end());
-      });
-  parallel_sort(found);
-  std::vector<LabelCount> sums;
-  for (const auto& [label, count] : found) {
-    if (sums.empty() || sums.back().first != label) sums.emplace_back(label, 0);
-    sums.back().second += count;
-  }
-  check(sums.size());
-  return sums;
-}
-
-/// "1, 2, 3" for messages: the labels that occur, without the outside label.
-std::string labels_text(const std::vector<MaterialTag>& labels, MaterialTag outside) {
-  std::vector<MaterialTag> found = parallel_collect<MaterialTag>(
-      0, labels.size(), InputGrains::voxels, [&](std::size_t begin, std::size_t end, auto& out) {
-        std::set<MaterialTag> smallest;
-        for_each_run(labels, begin, end, [&](std::size_t i, std::size_t) {
-          if (labels[i] == outside) return;
-          smallest.insert(labels[i]);
-          if (smallest.size() > InputTuning::Messages::max_listed_labels + 1)
-            smallest.erase(std::prev(smallest.end()));
-        });
-        out.assign(smallest.begin(), smallest.end());
-      });
-  parallel_sort_unique(found);
+/// "1, 2, 3" for messages: labels that occur, without the outside label.
+std::string labels_text(std::vector<MaterialTag> labels, MaterialTag outside) {
+  std::erase(labels, outside);
   std::string text;
-  for (std::size_t i = 0; i < std::min(found.size(), InputTuning::Messages::max_listed_labels); ++i)
-    text += (i ? ", " : "") + std::to_string(found[i]);
-  return text + (found.size() > InputTuning::Messages::max_listed_labels ? ", ..." : "");
+  for (std::size_t i = 0; i < std::min(labels.size(), InputTuning::Messages::max_listed_labels); ++i)
+    text += (i ? ", " : "") + std::to_string(labels[i]);
+  return text + (labels.size() > InputTuning::Messages::max_listed_labels ? ", ..." : "");
 }
 
 /// Throws if all of the volume is outside, or no label of a chosen range occurs.
-void check_choice(const LabelVolume& volume, const std::string& file, const LabelChoice& choice,
-                  const std::vector<LabelCount>& counts) {
+void check_choice(const LabelRegions& read, const std::string& file, const LabelChoice& choice) {
   for (const LabelRange& range : choice.labels) {
-    const auto first = std::lower_bound(counts.begin(), counts.end(), LabelCount(range.first, 0));
-    if (first != counts.end() && first->first <= range.second) continue;
-    const std::string there = labels_text(volume.labels, choice.outside_label);
+    const auto first = std::lower_bound(read.counts.begin(), read.counts.end(), LabelCount(range.first, 0));
+    if (first != read.counts.end() && first->first <= range.second) continue;
+    const std::string there = labels_text(read.smallest, choice.outside_label);
     if (there.empty()) break;  // the whole volume is outside
     throw InputError(file, 0,
                      (range.first == range.second ? "there is no label " : "there are none of the labels ") +
                          range_text(range) + "; there are " + there);
   }
-  if (counts.empty())
+  if (read.counts.empty())
     throw NothingToMeshError(file + ": all voxels have the outside label " +
                              std::to_string(choice.outside_label) +
                              "; is another one outside? see --outside-label");
@@ -182,32 +130,6 @@ std::vector<LabelMaterial> name_materials(const LabelChoice& choice, const std::
   return materials;
 }
 
-/// The region of each voxel: the index of its material, from 1; 0 for labels that are not materials.
-std::vector<RegionIndex> number_regions(const std::vector<MaterialTag>& labels,
-                                        const std::vector<LabelMaterial>& materials) {
-  // Use a table if labels are close together, as they nearly always are.
-  const std::int64_t low = materials.front().tag, high = materials.back().tag;
-  std::vector<RegionIndex> table;
-  if (high - low < 1 << 20) table.resize(static_cast<std::size_t>(high - low) + 1, outside_region);
-  for (std::size_t i = 0; !table.empty() && i < materials.size(); ++i)
-    table[static_cast<std::size_t>(materials[i].tag - low)] = static_cast<RegionIndex>(i + 1);
-  const auto region = [&](MaterialTag label) {
-    if (label < low || label > high) return outside_region;
-    if (!table.empty()) return table[static_cast<std::size_t>(label - low)];
-    const auto at = std::lower_bound(materials.begin(), materials.end(), label,
-                                     [](const LabelMaterial& m, MaterialTag l) { return m.tag < l; });
-    return at->tag == label ? static_cast<RegionIndex>(at - materials.begin() + 1) : outside_region;
-  };
-  std::vector<RegionIndex> regions(labels.size());
-  parallel_for(0, labels.size(), InputGrains::voxels, [&](std::size_t begin, std::size_t end) {
-    for_each_run(labels, begin, end, [&](std::size_t i, std::size_t j) {
-      std::fill(regions.begin() + static_cast<std::ptrdiff_t>(i),
-                regions.begin() + static_cast<std::ptrdiff_t>(j), region(labels[i]));
-    });
-  });
-  return regions;
-}
-
 /// Islands of one region that were merged into others.
 struct Loss {
   std::size_t islands = 0, voxels = 0;
@@ -250,8 +172,11 @@ void Preparation::merge(std::size_t outside, const Progress* progress) {
     add(DiagnosticCode::no_outside,
         "voxels, none of them outside (label " + std::to_string(choice_.outside_label) + ")",
         result_.voxel_count(), std::nullopt, "all meshed, up to the border of the volume");
-  const IslandMerging merging =
-      merge_small_islands(result_.regions, result_.size, choice_.min_voxels, progress);
+  const IslandMerging merging = merge_small_islands(result_.regions, choice_.min_voxels, progress);
+  if (merging.runs >= no_index)
+    throw InputError(result_.file, 0,
+                     "has " + std::to_string(merging.runs) +
+                         " runs of equal voxels, too many to look for small islands; give --min-voxels 0");
   if (merging.none_reaches)
     add(DiagnosticCode::islands_all_small,
         "islands of voxels, none of which has " + std::to_string(choice_.min_voxels), merging.islands,
@@ -271,13 +196,11 @@ void Preparation::merge(std::size_t outside, const Progress* progress) {
 }
 
 void Preparation::count(const Progress* progress) {
-  if (result_.voxel_count() >= no_index) return;
-  const std::vector<RegionParts> all =
-      count_parts(result_.regions, result_.size, result_.materials.size() + 1, progress);
+  const std::vector<RegionParts> all = count_parts(result_.regions, result_.materials.size() + 1, progress);
   for (std::size_t r = 0; r < all.size(); ++r) {
     LabelParts& parts = r == outside_region ? result_.outside_parts : result_.materials[r - 1].parts;
     parts = {all[r].touching, all[r].by_faces, std::nullopt};
-    if (all[r].smallest != no_index) parts.smallest_place = place(all[r].smallest);
+    if (all[r].smallest != no_voxel) parts.smallest_place = place(all[r].smallest);
   }
 }
 
@@ -327,34 +250,26 @@ void Preparation::drop_lost(const std::vector<Loss>& losses) {
   }
   result_.materials = std::move(kept);
   if (result_.lost.empty()) return;
-  parallel_for(0, result_.regions.size(), InputGrains::voxels, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) result_.regions[i] = renumbered[result_.regions[i]];
-  });
+  result_.regions.renumber(renumbered);
 }
 
 }  // namespace
 
-LabelInput make_label_input(LabelVolume volume, const std::string& file, const LabelChoice& choice,
+LabelInput make_label_input(const LabelSource& source, const std::string& file, const LabelChoice& choice,
                             Progress* progress) {
-  if (progress) progress->throw_if_stopped();
-  const Chosen chosen(choice);
-  if (choice.min_voxels > 1 && volume.labels.size() >= no_index)
-    throw InputError(file, 0,
-                     "has " + std::to_string(volume.labels.size()) +
-                         " voxels, too many to look for small islands; give --min-voxels 0");
-  const std::vector<LabelCount> counts = count_labels(volume.labels, chosen, file);
-  check_choice(volume, file, choice, counts);
+  const LabelGrid& grid = source.grid();
+  LabelRegions read = read_regions(source, file, Chosen(choice), progress);
+  check_choice(read, file, choice);
 
   LabelInput result;
   result.file = file;
-  result.size = volume.size;
-  result.origin = volume.origin;
-  result.directions = volume.directions;
-  result.space = volume.space;
-  result.materials = name_materials(choice, counts);
-  result.regions = number_regions(volume.labels, result.materials);
-  std::vector<MaterialTag>().swap(volume.labels);
-  if (volume.spacing_assumed)
+  result.size = grid.size;
+  result.origin = grid.origin;
+  result.directions = grid.directions;
+  result.space = grid.space;
+  result.materials = name_materials(choice, read.counts);
+  result.regions = std::move(read.regions);
+  if (grid.spacing_assumed)
     result.findings.push_back({.code = DiagnosticCode::spacing_assumed,
                                .file = file,
                                .what = "volume whose file gives no spacing",
@@ -362,7 +277,7 @@ LabelInput make_label_input(LabelVolume volume, const std::string& file, const L
                                .done = "each voxel has the size 1"});
   if (progress) progress->throw_if_stopped();
 
-  std::size_t outside = result.regions.size();
+  std::size_t outside = result.voxel_count();
   for (const LabelMaterial& m : result.materials) outside -= m.voxels;
   Preparation(result, choice).merge(outside, progress);
   if (result.materials.empty())

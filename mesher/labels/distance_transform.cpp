@@ -35,27 +35,33 @@ constexpr std::array<Neighbour, 13> earlier{{{{-1, 0, 0}, 3},
 
 DistanceTransform distance_transform(const LabelInput& labels) {
   const std::array<int, 3>& n = labels.size;
-  DistanceTransform depths{n, std::vector<std::uint8_t>(labels.regions.size(), max_steps)};
+  DistanceTransform depths{n, std::vector<std::uint8_t>(labels.voxel_count(), max_steps)};
   const auto step_y = static_cast<std::ptrdiff_t>(n[0]), step_z = step_y * n[1];
+  std::vector<RegionIndex> slice(static_cast<std::size_t>(step_z)), slice_before(slice.size());
   const auto visit = [&](int x, int y, int z, int direction) {
-    const std::ptrdiff_t i = z * step_z + y * step_y + x;
-    const RegionIndex own = labels.regions[i];
-    int min_steps = depths.steps[i];
+    const std::ptrdiff_t i = y * step_y + x;
+    const RegionIndex own = slice[i];
+    int min_steps = depths.steps[z * step_z + i];
     for (const Neighbour& k : earlier) {
       const int nx = x + direction * k.by[0], ny = y + direction * k.by[1], nz = z + direction * k.by[2];
       const bool inside = nx >= 0 && ny >= 0 && nz >= 0 && nx < n[0] && ny < n[1] && nz < n[2];
       if (!inside) continue;
-      const std::ptrdiff_t j = nz * step_z + ny * step_y + nx;
-      min_steps = std::min(min_steps, labels.regions[j] != own ? k.steps : depths.steps[j] + k.steps);
+      const std::ptrdiff_t j = ny * step_y + nx;
+      const RegionIndex region = nz == z ? slice[j] : slice_before[j];
+      min_steps = std::min(min_steps, region != own ? k.steps : depths.steps[nz * step_z + j] + k.steps);
     }
-    depths.steps[i] = static_cast<std::uint8_t>(min_steps);
+    depths.steps[z * step_z + i] = static_cast<std::uint8_t>(min_steps);
   };
-  for (int z = 0; z < n[2]; ++z)
+  for (int z = 0; z < n[2]; ++z, slice.swap(slice_before)) {
+    labels.regions.read_slices(z, z + 1, slice);
     for (int y = 0; y < n[1]; ++y)
       for (int x = 0; x < n[0]; ++x) visit(x, y, z, 1);
-  for (int z = n[2] - 1; z >= 0; --z)
+  }
+  for (int z = n[2] - 1; z >= 0; --z, slice.swap(slice_before)) {
+    labels.regions.read_slices(z, z + 1, slice);
     for (int y = n[1] - 1; y >= 0; --y)
       for (int x = n[0] - 1; x >= 0; --x) visit(x, y, z, -1);
+  }
   for (std::uint8_t& s : depths.steps) s = static_cast<std::uint8_t>(s - half_voxel);
   return depths;
 }

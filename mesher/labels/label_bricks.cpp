@@ -38,26 +38,28 @@ struct TileBricks {
 bool copy_voxels(const LabelInput& labels, const std::array<int, 3>& tile, std::span<RegionIndex> out) {
   constexpr int side = LabelSmoother::side;
   const std::array<int, 3>& size = labels.size;
-  std::array<int, 3> low;  // first index copied
-  for (int a = 0; a < 3; ++a)
-    low[a] = tile[a] * LabelSmoother::cells - LabelSmoother::reach - LabelBricks::padding;
-  const int from = std::clamp(-low[0], 0, side), to = std::clamp(size[0] - low[0], from, side);
-  const auto nearest = [&](int a, int i) { return std::clamp(low[a] + i, 0, size[a] - 1); };
-  bool alike = true;
-  RegionIndex first = outside_region;
-  RegionIndex* row = out.data();
-  for (int z = 0; z < side; ++z)
-    for (int y = 0; y < side; ++y, row += side) {
-      const RegionIndex* in = labels.regions.data() +
-                              (static_cast<std::size_t>(nearest(2, z)) * size[1] + nearest(1, y)) * size[0];
-      std::fill(row, row + from, in[0]);
-      std::copy(in + low[0] + from, in + low[0] + to, row + from);
-      std::fill(row + to, row + side, in[size[0] - 1]);
-      if (y == 0 && z == 0) first = row[0];
-      if (alike)
-        for (int x = 0; x < side; ++x) alike &= row[x] == first;
-    }
-  return !alike;
+  std::array<int, 3> first, low, high, extents;  // first index copied, box in the volume
+  for (int a = 0; a < 3; ++a) {
+    first[a] = tile[a] * LabelSmoother::cells - LabelSmoother::reach - LabelBricks::padding;
+    low[a] = std::clamp(first[a], 0, size[a] - 1);
+    high[a] = std::clamp(first[a] + side, low[a] + 1, size[a]);
+    extents[a] = high[a] - low[a];
+  }
+  if (extents == std::array<int, 3>{side, side, side}) {
+    labels.regions.read(low, high, out);
+  } else {
+    std::vector<RegionIndex> box(static_cast<std::size_t>(extents[0]) * extents[1] * extents[2]);
+    labels.regions.read(low, high, box);
+    const auto nearest = [&](int a, int i) { return std::clamp(first[a] + i, low[a], high[a] - 1) - low[a]; };
+    RegionIndex* to = out.data();
+    for (int z = 0; z < side; ++z)
+      for (int y = 0; y < side; ++y) {
+        const RegionIndex* const row =
+            box.data() + (static_cast<std::size_t>(nearest(2, z)) * extents[1] + nearest(1, y)) * extents[0];
+        for (int x = 0; x < side; ++x) *to++ = row[nearest(0, x)];
+      }
+  }
+  return !std::equal(out.begin() + 1, out.end(), out.begin());
 }
 
 void add_brick(const LabelSmoother& smoother, const std::array<int, 3>& in_tile, const std::array<int, 3>& at,

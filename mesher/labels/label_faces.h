@@ -13,6 +13,7 @@ namespace tetwright {
 /// and the outside, also at the border of the volume, `inner` between two materials.
 struct FaceAreas {
   double outer = 0, inner = 0;
+  double faces = 0;  ///< number of all
 };
 
 /// Runs in parallel; the result does not depend on the number of threads.

@@ -54,6 +54,10 @@ bool is_mirrored(const LabelInput& labels) { return labels.directions.determinan
 
 double voxel_size(const LabelInput& labels) { return labels.directions.colwise().norm().minCoeff(); }
 
+bool needs_depths(const LabelInput& labels, double cell_size) {
+  return cell_size > (1 + tolerance::coinciding_cells) * voxel_size(labels);
+}
+
 GridFrame label_frame(const LabelInput& labels, double cell_size, bool uniform) {
   Eigen::Matrix3d edges = labels.directions;
   Vec3 corner = Vec3::Constant(-0.5);
@@ -90,8 +94,7 @@ std::shared_ptr<const LabelField> LabelField::make(const LabelInput& labels, con
     made->voxels_per_cell[2] = -made->voxels_per_cell[2];
     made->first_node[2] += labels.size[2];
   }
-  if (frame.cell_size > (1 + tolerance::coinciding_cells) * made->voxel)
-    made->depths = distance_transform(labels);
+  if (needs_depths(labels, frame.cell_size)) made->depths = distance_transform(labels);
   std::vector<FieldRegion> regions{{keep_outside ? outside_name : "", outside_tag}};
   for (const LabelMaterial& m : labels.materials) regions.push_back({m.name, m.tag});
   return std::shared_ptr<const LabelField>(new LabelField(std::move(made), frame, std::move(regions), 0));

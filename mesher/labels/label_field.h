@@ -19,6 +19,10 @@ GridFrame label_frame(const LabelInput& labels, double cell_size, bool uniform);
 /// The length of a voxel: the smallest of the three spacings, input units.
 double voxel_size(const LabelInput& labels);
 
+/// Whether cells are so much larger than voxels that the field has a distance_transform(), a byte for each
+/// voxel. \param cell_size input units
+bool needs_depths(const LabelInput& labels, double cell_size);
+
 /// The field of a segmented volume; see LabelSmoother for how its distances are computed.
 ///
 /// Distances are measured in index space, with each axis in its own spacing, and multiplied by the smallest

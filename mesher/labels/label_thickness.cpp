@@ -14,35 +14,50 @@ namespace tetwright {
 
 namespace {
 
-using Sides = std::array<int, 3>;
+using Sides = VoxelIndex;
 
-/// Finds the voxels that no box of `sides` voxels of their region contains, as ascending indices.
+/// Finds the voxels of some slices that no box of `sides` voxels of their region contains. Other slices as
+/// far as boxes reach, and their neighbours, are read with them.
 class Opening {
  public:
-  Opening(const LabelInput& labels, const Sides& sides, const Progress* progress)
-      : regions_(labels.regions),
-        size_(labels.size),
+  Opening(const LabelInput& labels, const Sides& sides, int first, int last, const Progress* progress)
+      : size_(labels.size),
         sides_(sides),
         progress_(progress),
-        holds_(labels.regions.size(), 1),
-        runs_(labels.regions.size()) {}
+        slice_(static_cast<std::size_t>(size_[0]) * static_cast<std::size_t>(size_[1])),
+        first_(first),
+        last_(last),
+        low_(std::max(0, first - sides[2])),
+        high_(std::min(size_[2], last + sides[2])),
+        regions_(static_cast<std::size_t>(high_ - low_) * slice_),
+        holds_(regions_.size(), 1),
+        runs_(regions_.size()) {
+    parallel_for(0, static_cast<std::size_t>(high_ - low_), 1, [&](std::size_t begin, std::size_t end) {
+      labels.regions.read_slices(low_ + static_cast<int>(begin), low_ + static_cast<int>(end),
+                                 std::span(regions_).subspan(begin * slice_, (end - begin) * slice_));
+    });
+  }
 
+  /// Ascending numbers of voxels of the volume.
   std::vector<std::size_t> thin_voxels() {
     // Process one axis after another: a box starts at a voxel if enough consecutive voxels pass the test of
     // the previous axes. Then mark every voxel of such a box as thick.
     for (int axis = 0; axis < 3; ++axis) sweep(axis, [&](int a, auto&&... p) { start_boxes(a, p...); });
     for (int axis = 0; axis < 3; ++axis) sweep(axis, [&](int a, auto&&... p) { fill_boxes(a, p...); });
     return parallel_collect<std::size_t>(
-        0, holds_.size(), LabelGrains::voxels,
-        [&](std::size_t begin, std::size_t end, std::vector<std::size_t>& out) {
+        static_cast<std::size_t>(first_ - low_) * slice_, static_cast<std::size_t>(last_ - low_) * slice_,
+        LabelGrains::voxels, [&](std::size_t begin, std::size_t end, std::vector<std::size_t>& out) {
           for (std::size_t i = begin; i < end; ++i)
             if (!holds_[i] && !beside_thick(i) &&
                 !(regions_[i] == outside_region && in_box_from_outside_volume(i)))
-              out.push_back(i);
+              out.push_back(static_cast<std::size_t>(low_) * slice_ + i);
         });
   }
 
  private:
+  /// Voxels along an axis that were read.
+  int extent(int axis) const { return axis == 2 ? high_ - low_ : size_[axis]; }
+
   /// Calls `work(axis, first, step, lines)` for lines of voxels along an axis: the first voxel, the step
   /// between voxels of a line, and the number of adjacent lines.
   template <class Work>
@@ -51,7 +66,7 @@ class Opening {
     const auto nx = static_cast<std::size_t>(size_[0]), ny = static_cast<std::size_t>(size_[1]);
     // Process whole rows along x at a time, for sequential memory access.
     if (axis < 2)
-      parallel_for(0, static_cast<std::size_t>(size_[2]), 1, [&](std::size_t begin, std::size_t end) {
+      parallel_for(0, static_cast<std::size_t>(extent(2)), 1, [&](std::size_t begin, std::size_t end) {
         for (std::size_t z = begin; z < end; ++z) {
           if (axis == 1) {
             work(axis, z * nx * ny, nx, nx);
@@ -67,19 +82,21 @@ class Opening {
   }
 
   void start_boxes(int axis, std::size_t first, std::size_t step, std::size_t lines) {
-    const int side = sides_[axis];
-    for (int k = size_[axis] - 1; k >= 0; --k)
+    const int side = sides_[axis], n = extent(axis);
+    // The outside continues beyond the volume. Boxes that begin in slices where it would matter that those
+    // behind them were not read reach none of the slices asked for.
+    const bool continues = axis < 2 || high_ == size_[2];
+    for (int k = n - 1; k >= 0; --k)
       for (std::size_t line = 0; line < lines; ++line) {
         const std::size_t i = first + static_cast<std::size_t>(k) * step + line;
-        const bool last = k + 1 == size_[axis];
         int run = 0;
         if (holds_[i])
-          // The outside continues beyond the volume.
-          run = last ? (regions_[i] == outside_region ? side : 1)
-                     : (regions_[i + step] == regions_[i] ? std::min<int>(runs_[i + step] + 1, side) : 1);
+          run = k + 1 == n
+                    ? (continues && regions_[i] == outside_region ? side : 1)
+                    : (regions_[i + step] == regions_[i] ? std::min<int>(runs_[i + step] + 1, side) : 1);
         runs_[i] = static_cast<std::uint8_t>(run);
       }
-    for (int k = 0; k < size_[axis]; ++k)
+    for (int k = 0; k < n; ++k)
       for (std::size_t line = 0; line < lines; ++line) {
         const std::size_t i = first + static_cast<std::size_t>(k) * step + line;
         holds_[i] = runs_[i] >= side;
@@ -87,33 +104,32 @@ class Opening {
   }
 
   void fill_boxes(int axis, std::size_t first, std::size_t step, std::size_t lines) {
-    const int side = sides_[axis];
-    for (int k = 0; k < size_[axis]; ++k)
+    const int side = sides_[axis], n = extent(axis);
+    for (int k = 0; k < n; ++k)
       for (std::size_t line = 0; line < lines; ++line) {
         const std::size_t i = first + static_cast<std::size_t>(k) * step + line;
         const int left = holds_[i] ? side : k > 0 ? std::max(0, runs_[i - step] - 1) : 0;
         runs_[i] = static_cast<std::uint8_t>(left);
       }
-    for (int k = 0; k < size_[axis]; ++k)
+    for (int k = 0; k < n; ++k)
       for (std::size_t line = 0; line < lines; ++line) {
         const std::size_t i = first + static_cast<std::size_t>(k) * step + line;
         holds_[i] = runs_[i] > 0;
       }
   }
 
+  /// The position of a voxel among those that were read.
+  std::array<int, 3> position(std::size_t i) const {
+    const auto nx = static_cast<std::size_t>(size_[0]);
+    return {static_cast<int>(i % nx), static_cast<int>(i % slice_ / nx), static_cast<int>(i / slice_)};
+  }
+
   /// True for a voxel of the outside in a box that starts before the volume. sweep() does not find such
   /// boxes, so this tries all of them.
   bool in_box_from_outside_volume(std::size_t i) const {
-    std::array<int, 3> at, low;
-    std::size_t rest = i;
-    bool near_border = false;
-    for (int a = 0; a < 3; ++a) {
-      const auto n = static_cast<std::size_t>(size_[a]);
-      at[a] = static_cast<int>(rest % n);
-      rest /= n;
-      near_border |= at[a] < sides_[a] - 1;
-    }
-    if (!near_border) return false;
+    std::array<int, 3> at = position(i), low;
+    at[2] += low_;
+    if (at[0] >= sides_[0] - 1 && at[1] >= sides_[1] - 1 && at[2] >= sides_[2] - 1) return false;
     if (sides_[0] * sides_[1] * sides_[2] > LabelTuning::Thickness::max_tried) return true;
     for (low[2] = at[2] - sides_[2] + 1; low[2] <= at[2]; ++low[2])
       for (low[1] = at[1] - sides_[1] + 1; low[1] <= at[1]; ++low[1])
@@ -130,28 +146,30 @@ class Opening {
     for (int z = from[2]; z < to[2]; ++z)
       for (int y = from[1]; y < to[1]; ++y)
         for (int x = from[0]; x < to[0]; ++x)
-          if (regions_[(static_cast<std::size_t>(z) * size_[1] + y) * size_[0] + x] != outside_region)
+          if (regions_[(static_cast<std::size_t>(z - low_) * size_[1] + y) * size_[0] + x] != outside_region)
             return false;
     return true;
   }
 
   /// True for a voxel next to a thick one, which is roughness of one voxel that smoothing removes.
   bool beside_thick(std::size_t i) const {
-    std::size_t rest = i, step = 1;
+    const std::array<int, 3> at = position(i);
+    std::size_t step = 1;
     for (int a = 0; a < 3; ++a) {
-      const auto n = static_cast<std::size_t>(size_[a]), at = rest % n;
-      if (at > 0 && holds_[i - step] && regions_[i - step] == regions_[i]) return true;
-      if (at + 1 < n && holds_[i + step] && regions_[i + step] == regions_[i]) return true;
-      rest /= n;
-      step *= n;
+      if (at[a] > 0 && holds_[i - step] && regions_[i - step] == regions_[i]) return true;
+      if (at[a] + 1 < extent(a) && holds_[i + step] && regions_[i + step] == regions_[i]) return true;
+      step *= static_cast<std::size_t>(size_[a]);
     }
     return false;
   }
 
-  const std::vector<RegionIndex>& regions_;
   const std::array<int, 3> size_;
   const Sides sides_;
   const Progress* progress_;
+  const std::size_t slice_;  ///< voxels
+  const int first_, last_;   ///< slices asked for, the last one excluded
+  const int low_, high_;     ///< slices that were read
+  std::vector<RegionIndex> regions_;
   std::vector<std::uint8_t> holds_, runs_;
 };
 
@@ -203,14 +221,14 @@ class ThinLabelFinder {
   bool find_voxels(int depth) {
     const Sides sides = sides_at(depth);
     if (sides != Sides{1, 1, 1}) {
-      voxels_ = Opening(labels_, sides, progress_).thin_voxels();
+      voxels_ = thin_voxels(labels_, sides, LabelTuning::Thickness::slab_bytes, progress_);
       return !voxels_.empty();
     }
     if (island_levels_ == 2 ||
         LabelTuning::Thickness::cells_per_island_voxel * frame_.cell_size <= spacing_.minCoeff())
       return false;
     ++island_levels_;
-    if (depth == 0) voxels_ = Opening(labels_, {2, 2, 2}, progress_).thin_voxels();
+    if (depth == 0) voxels_ = thin_voxels(labels_, {2, 2, 2}, LabelTuning::Thickness::slab_bytes, progress_);
     std::erase_if(voxels_, [&](std::size_t v) {
       return labels_.regions[v] == outside_region ||
              !in_small_island(labels_, v, LabelTuning::Thickness::small_island);
@@ -295,6 +313,22 @@ class ThinLabelFinder {
 
 }  // namespace
 
+std::vector<std::size_t> thin_voxels(const LabelInput& labels, const VoxelIndex& sides,
+                                     std::size_t slab_bytes, const Progress* progress) {
+  const std::size_t slice_bytes = LabelTuning::Thickness::bytes_per_voxel *
+                                  static_cast<std::size_t>(labels.size[0]) *
+                                  static_cast<std::size_t>(labels.size[1]);
+  const int depth = std::max({static_cast<int>(slab_bytes / slice_bytes) - 2 * sides[2],
+                              LabelTuning::Thickness::min_slab * sides[2], RegionGrid::side});
+  std::vector<std::size_t> all;
+  for (int first = 0; first < labels.size[2]; first += depth) {
+    const int last = std::min(labels.size[2], first + depth);
+    const std::vector<std::size_t> thin = Opening(labels, sides, first, last, progress).thin_voxels();
+    all.insert(all.end(), thin.begin(), thin.end());
+  }
+  return all;
+}
+
 ThinLabels find_thin_labels(const LabelInput& labels, const GridFrame& frame, const Progress* progress) {
   ThinLabelFinder finder(labels, frame, progress);
   ThinLabels thin;
@@ -325,16 +359,16 @@ ThinCells count_thin_cells(const LabelInput& labels, const GridFrame& frame, con
       const std::array<int, 3> low = morton_decode(key);
       const Vec3 centre = side * (Vec3(low[0], low[1], low[2]) + Vec3::Constant(0.5));
       const Vec3 index = to_index * (frame.to_input(centre) - labels.origin);
-      std::size_t voxel = 0, step = 1;
+      VoxelIndex voxel{};
       bool in_volume = true;
       for (int a = 0; a < 3; ++a) {
         const double at = std::round(index[a]);
         in_volume &= at >= 0 && at < labels.size[a];
         if (!in_volume) break;
-        voxel += static_cast<std::size_t>(at) * step;
-        step *= static_cast<std::size_t>(labels.size[a]);
+        voxel[a] = static_cast<int>(at);
       }
-      ++(in_volume && labels.regions[voxel] != outside_region ? count.inside : count.outside);
+      ++(in_volume && labels.regions.at(voxel[0], voxel[1], voxel[2]) != outside_region ? count.inside
+                                                                                        : count.outside);
     }
   }
   return count;

@@ -19,11 +19,23 @@ struct ThinLabels {
   std::vector<ThinPart> too_thin;
 };
 
+/// Finds the voxels that are in no box of one region, nor beside a voxel of their region that is. The outside
+/// continues beyond the volume. Parallel.
+/// \param sides of the box, voxels
+/// \param slab_bytes memory for as many slices as it holds, but at least for some (LabelTuning::Thickness);
+///   the result does not depend on it
+/// \param progress may be null
+/// \return numbers of voxels, the first axis fastest, ascending
+/// \throws Interrupted
+std::vector<std::size_t> thin_voxels(const LabelInput& labels, const VoxelIndex& sides,
+                                     std::size_t slab_bytes, const Progress* progress);
+
 /// Finds the voxels where labels are thin. A label is thick at a voxel if a cube of two cells that contains
 /// the voxel fits into the label (an opening, Serra 1982), or the voxel is adjacent to such a cube. Elsewhere
 /// the cells around the voxel are halved until the cube fits or they have an eighth of their size. Islands of
 /// fewer than eight voxels, if there are few, get eight cells per voxel. Also determines how large cells at
-/// other interfaces may be. Needs two bytes per voxel temporarily.
+/// other interfaces may be. Needs some 256 MB temporarily, or four bytes for each voxel if that is less; more
+/// for slices of millions of voxels.
 /// \param frame from label_frame()
 /// \param progress may be null
 /// \throws Interrupted

@@ -19,10 +19,8 @@ struct EstimateTuning {
     static constexpr double per_surface_lattice_tet = 40, per_label_lattice_tet = 33;
     /// Peak with uniform cells. It occurs while the lattice is built, as most leaves are far from interfaces.
     static constexpr double per_uniform_lattice_tet = 19, per_uniform_leaf = 124;
-    /// Per voxel of a volume: its region and the labels' distances.
-    static constexpr double per_voxel = 4;
-    /// Per voxel while the volume is read: its label in the file and its region.
-    static constexpr double per_voxel_read = 6;
+    /// Distances of labels per face between voxels of two regions: 43 to 60 measured.
+    static constexpr double per_label_face = 60;
     /// Per triangle while signed distances are computed; open parts also need a tree.
     static constexpr double per_triangle = 150, per_open_triangle = 300;
     /// Factor for cells so small that they resolve the input's facets: 1.8 measured for a bunny at 780 cells

@@ -9,6 +9,7 @@ namespace tetwright {
 /// all threads busy to the end.
 struct LabelGrains {
   static constexpr std::size_t tiles = 2;              ///< several milliseconds each where labels meet
+  static constexpr std::size_t slices = 8;             ///< each is read with the next one
   static constexpr std::size_t voxels = 1 << 18;       ///< mostly skipped
   static constexpr std::size_t thin_voxels = 1 << 16;  ///< with the cells around each, most of them the same
 };
@@ -95,6 +96,10 @@ struct LabelTuning {
     static constexpr double min_cells = 2;
     /// Max voxels along a side of a box of two cells: its sides are counted in bytes.
     static constexpr int max_side = 200;
+    /// Memory of the slices that are searched at a time, with those around them, and of each voxel, bytes.
+    static constexpr std::size_t slab_bytes = std::size_t{1} << 28, bytes_per_voxel = 4;
+    /// Min number of slices that are searched at a time, sides of a box: two of them more are read around.
+    static constexpr int min_slab = 4;
     /// Max voxels of a box for which positions partly outside the volume are tried. Larger boxes belong to
     /// cells much larger than voxels, where gaps this small hardly matter.
     static constexpr int max_tried = 512;

@@ -22,7 +22,19 @@ LabelInput make_labels(const std::array<int, 3>& size, const VoxelLabels& label,
       for (int x = 0; x < size[0]; ++x) volume.labels.push_back(label(x, y, z));
   LabelChoice choice;
   choice.min_voxels = 0;
-  return make_label_input(std::move(volume), "made.nrrd", choice, nullptr);
+  return make_label_input(MemoryLabelSource(std::move(volume)), "made.nrrd", choice, nullptr);
+}
+
+RegionGrid grid_of(const std::array<int, 3>& size, const std::vector<RegionIndex>& regions) {
+  RegionGrid grid(size);
+  grid.write_slices(0, regions);
+  return grid;
+}
+
+std::vector<RegionIndex> voxels_of(const RegionGrid& grid) {
+  std::vector<RegionIndex> regions(grid.voxels());
+  grid.read_slices(0, grid.size()[2], regions);
+  return regions;
 }
 
 RegionIndex region_of(const LabelInput& labels, MaterialTag tag) {
@@ -47,7 +59,7 @@ class Voxels {
     return (static_cast<std::size_t>(v[2]) * labels_.size[1] + v[1]) * labels_.size[0] + v[0];
   }
   RegionIndex at(const std::array<int, 3>& v) const {
-    return has(v) ? labels_.regions[number(v)] : outside_region;
+    return has(v) ? labels_.regions.at(v[0], v[1], v[2]) : outside_region;
   }
   bool alone(const std::array<int, 3>& v) const {
     for (int a = 0; a < 3; ++a)

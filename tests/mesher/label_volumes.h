@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "tetwright/mesher.h"
 
@@ -16,6 +17,10 @@ using VoxelLabels = std::function<MaterialTag(int x, int y, int z)>;
 LabelInput make_labels(const std::array<int, 3>& size, const VoxelLabels& label,
                        const Eigen::Matrix3d& directions = Eigen::Matrix3d::Identity(),
                        const Vec3& origin = Vec3::Zero());
+
+/// A grid of the regions of all voxels, the first axis fastest, and the regions of a grid.
+RegionGrid grid_of(const std::array<int, 3>& size, const std::vector<RegionIndex>& regions);
+std::vector<RegionIndex> voxels_of(const RegionGrid& grid);
 
 /// Measures how well a mesh of a segmented volume meets its guarantees.
 struct LabelComparison {

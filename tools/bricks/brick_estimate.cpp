@@ -55,9 +55,11 @@ BrickEstimator::BrickEstimator(const LabelInput& labels, const MesherOptions& op
       cell_(cell_size(labels, options)),
       dense_(dense),
       target_(static_cast<double>(target)),
-      field_(PerItem::program + label_memory(labels).beside),
-      before_(PerItem::program + label_memory(labels).before),
-      scratch_(scratch) {}
+      scratch_(scratch) {
+  const MemoryModel memory = label_memory(labels, cell_);
+  field_ = PerItem::program + memory.beside;
+  before_ = PerItem::program + memory.before;
+}
 
 BrickEstimator::Needs BrickEstimator::needs(int side) const {
   std::array<double, 3> cells;

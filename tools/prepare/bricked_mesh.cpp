@@ -59,9 +59,15 @@ std::vector<std::uint8_t> materials_there(const MaterialField& field, const Mesh
 }
 
 /// Checksum of the regions of all voxels.
-std::string checksum(const std::vector<RegionIndex>& regions) {
-  const auto* const bytes = reinterpret_cast<const Bytef*>(regions.data());
-  return std::to_string(crc32_z(0, bytes, regions.size() * sizeof(RegionIndex)));
+std::string checksum(const RegionGrid& regions) {
+  std::vector<RegionIndex> slice(static_cast<std::size_t>(regions.size()[0]) *
+                                 static_cast<std::size_t>(regions.size()[1]));
+  uLong sum = 0;
+  for (int z = 0; z < regions.size()[2]; ++z) {
+    regions.read_slices(z, z + 1, slice);
+    sum = crc32_z(sum, reinterpret_cast<const Bytef*>(slice.data()), slice.size() * sizeof(RegionIndex));
+  }
+  return std::to_string(sum);
 }
 
 std::string numbers(std::initializer_list<double> values) {

@@ -13,6 +13,7 @@
 #include "common/utf8.h"
 #include "tetwright/error.h"
 #include "tetwright/io.h"
+#include "tetwright/label_source.h"
 
 namespace tetwright {
 
@@ -157,7 +158,7 @@ LabelVolume join_masks(std::vector<Input>& volumes, LabelChoice& choice, Prepare
       layers = read_label_layers(file);
       for (const LabelVolume& layer : layers) of_layers.push_back(segments_of(layer, choice.outside_label));
     } else {
-      layers.push_back(take_label_volume(input, run.seconds_waited));
+      layers.push_back(read_all(*take_label_source(input, run.seconds_waited), file));
       const MaterialTag label = label_of_mask(layers.front(), choice.outside_label, file);
       of_layers.push_back({{label, input.material.empty() ? input.material_name() : input.material}});
     }

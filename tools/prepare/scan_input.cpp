@@ -111,23 +111,24 @@ LabelChoice label_choice(const LabelOptions& options) {
 }
 
 /// Uses the names in the volume's file, made unique among labels and different from the outside's name.
-void take_names(const LabelVolume& volume, LabelChoice& choice) {
+void take_names(const LabelGrid& volume, LabelChoice& choice) {
   UniqueNames unique(printable_name);
   (void)unique.add("outside");
   for (const auto& [tag, name] : volume.names)
     if (tag != choice.outside_label) choice.names[tag] = unique.add(name);
 }
 
-LabelInput read_labels(std::optional<LabelVolume> vdb_labels, std::vector<Input>& inputs, PrepareRun& run) {
+LabelInput read_labels(std::optional<LabelVolume> in_memory, std::vector<Input>& inputs, PrepareRun& run) {
   // Done before reading the volume, which takes longer.
   LabelChoice choice = label_choice(run.options.labels);
-  const bool masks = !vdb_labels && are_masks(inputs);
-  LabelVolume volume = vdb_labels ? std::move(*vdb_labels)
-                       : masks    ? join_masks(inputs, choice, run)
-                                  : take_label_volume(inputs.front(), run.seconds_waited);
-  if (!masks && run.options.labels.names_file.empty()) take_names(volume, choice);
-  run.report.material_colours = volume.colours;
-  LabelInput labels = make_label_input(std::move(volume), run.report.inputs.front(), choice, &run.progress);
+  const bool masks = !in_memory && are_masks(inputs);
+  if (masks) in_memory = join_masks(inputs, choice, run);
+  const std::unique_ptr<const LabelSource> source =
+      in_memory ? std::make_unique<MemoryLabelSource>(std::move(*in_memory))
+                : take_label_source(inputs.front(), run.seconds_waited);
+  if (!masks && run.options.labels.names_file.empty()) take_names(source->grid(), choice);
+  run.report.material_colours = source->grid().colours;
+  LabelInput labels = make_label_input(*source, run.report.inputs.front(), choice, &run.progress);
   run.report.diagnostics.insert(run.report.diagnostics.end(), labels.findings.begin(), labels.findings.end());
   run.report.volume.emplace(labels);
   return labels;

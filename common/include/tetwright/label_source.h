@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <utility>
@@ -65,6 +66,28 @@ class MemoryLabelSource final : public LabelSource {
 
  private:
   std::vector<MaterialTag> labels_;
+};
+
+/// The boxes in which all of a source is read: whole blocks, joined along the first axis, then the others.
+class LabelBoxes {
+ public:
+  /// \param voxels of a box, unless a block has more
+  LabelBoxes(const LabelSource& source, std::int64_t voxels);
+
+  int slices() const { return box_[2]; }  ///< of a box
+  std::size_t voxels() const;             ///< of a box, at most
+  bool of_whole_slices() const { return boxes_[0] == 1 && boxes_[1] == 1; }
+  /// Number of threads that for_each() uses for `slices` slices.
+  std::size_t workers(int slices) const;
+
+  /// Calls `body(low, high, worker)` for the boxes of the slices from `first` to before `last`, concurrently:
+  /// a worker, numbered from 0, runs on one thread at a time. Rethrows the exception of the first box that
+  /// has one, for any number of threads. \pre `first` is a multiple of slices()
+  void for_each(int first, int last,
+                const std::function<void(const VoxelIndex&, const VoxelIndex&, unsigned)>& body) const;
+
+ private:
+  VoxelIndex size_, box_, boxes_{};
 };
 
 /// Reads all labels of a source, decoding blocks in parallel. The volume takes four bytes for each voxel.

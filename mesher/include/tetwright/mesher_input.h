@@ -14,21 +14,17 @@
 #include <vector>
 
 #include "tetwright/diagnostic.h"
-#include "tetwright/label_volume.h"
+#include "tetwright/label_source.h"
 #include "tetwright/progress.h"
+#include "tetwright/region_grid.h"
 #include "tetwright/surface_mesh.h"
 #include "tetwright/tet_mesh.h"
 
 namespace tetwright {
 
-/// Index of a region of space: 0 is the outside, the materials follow.
-using RegionIndex = std::uint16_t;
-inline constexpr RegionIndex outside_region = 0;
 /// Tag and name of the outside as a material of a mesh that keeps it.
 inline constexpr MaterialTag outside_tag = 0;
 inline constexpr const char* outside_name = "outside";
-/// Marks a point on an interface, instead of its region.
-inline constexpr RegionIndex on_interface = 0xffff;
 
 /// How many times cells are halved where walls and gaps of a surface are thin: by default, and at most.
 inline constexpr int default_wall_refinement = 3, max_wall_refinement = 8;
@@ -391,33 +387,38 @@ struct LabelInput {
   std::array<int, 3> size{};
   Vec3 origin = Vec3::Zero();
   Eigen::Matrix3d directions = Eigen::Matrix3d::Identity();
-  std::string space;  ///< see LabelVolume
-  /// Region of each voxel, first axis fastest: 0 is outside, i + 1 is materials[i].
-  std::vector<RegionIndex> regions;
+  std::string space;                     ///< see LabelVolume
+  RegionGrid regions;                    ///< 0 is outside, i + 1 is materials[i]
   std::vector<LabelMaterial> materials;  ///< by ascending tag
   std::vector<LostLabel> lost;           ///< by ascending tag
   std::size_t merged_islands = 0;        ///< including those of the outside
   std::size_t merged_voxels = 0;
-  /// Parts of the outside that do not reach the border of the volume. Parts are not counted in volumes of
-  /// 2^32 voxels or more.
+  /// Parts of the outside that do not reach the border of the volume. Parts are not counted if there are
+  /// more than 2^32 - 2 runs of equal voxels along the first axis.
   LabelParts outside_parts;
   std::vector<Diagnostic> findings;  ///< changes to the input, for the user
 
-  std::size_t voxel_count() const { return regions.size(); }
+  std::uint64_t voxel_count() const { return regions.voxels(); }
 };
 
 /// Chooses the labels and merges islands of fewer than `min_voxels` voxels into their neighbours, see
 /// merge_small_islands(). If no island has that many voxels, nothing is merged and a finding says so. The
 /// result does not depend on the number of threads.
 ///
+/// The source is read once, by layers of whole blocks. The regions take about half a byte for each voxel, and
+/// islands 18 bytes for each run of equal voxels along the first axis.
+///
+/// \param file file name for messages
 /// \param progress may be null
 /// \throws UsageError for invalid ranges and names: the outside label is chosen, two labels share a name, a
 ///   label is called "outside"
 /// \throws InputError for invalid names that come from a file, a chosen label that does not exist (with a
-///   list of those that do), or more than 60,000 labels
+///   list of those that do), more than 60,000 labels, small islands in more than 2^32 - 2 runs, or as
+///   LabelSource::read() does, for the first block with an error
+/// \throws OutputError if memory does not suffice
 /// \throws NothingToMeshError if all voxels are outside
 /// \throws Interrupted
-LabelInput make_label_input(LabelVolume volume, const std::string& file, const LabelChoice& choice,
+LabelInput make_label_input(const LabelSource& source, const std::string& file, const LabelChoice& choice,
                             Progress* progress);
 
 /// Splits a surface into one surface per group of triangles, in the order of their first triangles. The

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "common/random.h"
+#include "tests/mesher/label_volumes.h"
 #include "tetwright/resources.h"
 
 namespace tetwright::connected_components_test {
@@ -16,9 +17,10 @@ namespace {
 using Size = std::array<int, 3>;
 using Regions = std::vector<RegionIndex>;
 
-Regions merged(Regions regions, const Size& size, std::size_t min_voxels) {
-  merge_small_islands(regions, size, min_voxels, nullptr);
-  return regions;
+Regions merged(const Regions& regions, const Size& size, std::size_t min_voxels) {
+  RegionGrid grid = grid_of(size, regions);
+  merge_small_islands(grid, min_voxels, nullptr);
+  return voxels_of(grid);
 }
 
 /// One row of voxels, a digit each.
@@ -133,19 +135,20 @@ TEST(ConnectedComponents, TheSameAsByTheRulesTakenLiterally) {
     Plain plain(regions, size);
     const std::vector<std::vector<std::size_t>> islands = plain.find();
     const Regions expected = plain.merge(min_voxels);
-    Regions result = regions;
-    const IslandMerging merging = merge_small_islands(result, size, min_voxels, nullptr);
+    RegionGrid grid = grid_of(size, regions);
+    const IslandMerging merging = merge_small_islands(grid, min_voxels, nullptr);
+    const Regions result = voxels_of(grid);
     ASSERT_EQ(result, expected);
     changed += result != regions;
 
     // The reported merges are the actual ones.
-    std::map<Index, MergedIsland> merged;
+    std::map<std::uint64_t, MergedIsland> merged;
     for (const MergedIsland& m : merging.merged) merged[m.voxel] = m;
     ASSERT_EQ(merged.size(), merging.merged.size());
     std::size_t largest = 0;
     for (const std::vector<std::size_t>& island : islands) {
       largest = std::max(largest, island.size());
-      const auto found = merged.find(static_cast<Index>(island[0]));
+      const auto found = merged.find(island[0]);
       ASSERT_EQ(found != merged.end(), result[island[0]] != regions[island[0]]);
       if (found == merged.end()) continue;
       EXPECT_EQ(found->second.voxels, island.size());
@@ -254,16 +257,15 @@ TEST(ConnectedComponents, IslandsHangTogetherByFacesAlone) {
 
 TEST(ConnectedComponents, NothingIsMergedWhereNoIslandReachesTheNumber) {
   for (const std::string text : {"0123", "1", "1111"}) {
-    Regions regions = row(text);
-    const Size size{static_cast<int>(text.size()), 1, 1};
-    const IslandMerging merging = merge_small_islands(regions, size, 5, nullptr);
-    EXPECT_EQ(regions, row(text));
+    RegionGrid grid = grid_of({static_cast<int>(text.size()), 1, 1}, row(text));
+    const IslandMerging merging = merge_small_islands(grid, 5, nullptr);
+    EXPECT_EQ(voxels_of(grid), row(text));
     EXPECT_TRUE(merging.none_reaches);
     EXPECT_TRUE(merging.merged.empty());
     EXPECT_EQ(merging.islands, std::set<char>(text.begin(), text.end()).size());
   }
-  Regions regions = row("1121");
-  EXPECT_TRUE(merge_small_islands(regions, {4, 1, 1}, std::size_t{1} << 40, nullptr).none_reaches);
+  RegionGrid grid = grid_of({4, 1, 1}, row("1121"));
+  EXPECT_TRUE(merge_small_islands(grid, std::size_t{1} << 40, nullptr).none_reaches);
 }
 
 TEST(ConnectedComponents, TheSameForAnyNumberOfThreads) {
@@ -328,26 +330,25 @@ TEST(ConnectedComponents, PartsAreThoseOfAFloodFill) {
     for (int round = 0; round < 20; ++round) {
       Regions regions(static_cast<std::size_t>(size[0]) * size[1] * size[2]);
       for (RegionIndex& r : regions) r = static_cast<RegionIndex>(random.below(2 + round % 4));
-      const std::vector<RegionParts> parts = count_parts(regions, size, 5, nullptr);
+      const std::vector<RegionParts> parts = count_parts(grid_of(size, regions), 5, nullptr);
       for (RegionIndex r = 0; r < 5; ++r) {
         EXPECT_EQ(parts[r].by_faces, plain_parts(regions, size, r, false));
         EXPECT_EQ(parts[r].touching, plain_parts(regions, size, r, true));
-        EXPECT_EQ(parts[r].smallest == no_index, parts[r].by_faces == 0);
-        if (parts[r].smallest != no_index) {
+        EXPECT_EQ(parts[r].smallest == no_voxel, parts[r].by_faces == 0);
+        if (parts[r].smallest != no_voxel) {
           EXPECT_EQ(regions[parts[r].smallest], r);
         }
       }
     }
-  Regions two = row("1101000100");
-  EXPECT_EQ(count_parts(two, {10, 1, 1}, 2, nullptr)[1].smallest, 3u);
+  EXPECT_EQ(count_parts(grid_of({10, 1, 1}, row("1101000100")), 2, nullptr)[1].smallest, 3u);
 }
 
 TEST(ConnectedComponents, CanBeInterrupted) {
   Progress progress;
   progress.cancel();
-  Regions regions = row("1121");
-  EXPECT_THROW(merge_small_islands(regions, {4, 1, 1}, 2, &progress), Interrupted);
-  EXPECT_THROW(count_parts(regions, {4, 1, 1}, 3, &progress), Interrupted);
+  RegionGrid grid = grid_of({4, 1, 1}, row("1121"));
+  EXPECT_THROW(merge_small_islands(grid, 2, &progress), Interrupted);
+  EXPECT_THROW(count_parts(grid, 3, &progress), Interrupted);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "common/random.h"
 #include "tests/common/io/expect_error.h"
+#include "tests/mesher/label_volumes.h"
 #include "tetwright/resources.h"
 
 namespace tetwright::label_input_test {
@@ -24,7 +25,7 @@ LabelVolume volume_of(const std::vector<MaterialTag>& labels) {
 }
 
 LabelInput prepare(const std::vector<MaterialTag>& labels, const LabelChoice& choice) {
-  return make_label_input(volume_of(labels), "scan.nrrd", choice, nullptr);
+  return make_label_input(MemoryLabelSource(volume_of(labels)), "scan.nrrd", choice, nullptr);
 }
 
 LabelChoice unmerged() {
@@ -53,7 +54,7 @@ using Texts = std::vector<std::string>;
 TEST(LabelInput, SpacingThatTheFileDoesNotGiveIsNoted) {
   LabelVolume volume = volume_of({0, 1, 2});
   volume.spacing_assumed = true;
-  EXPECT_EQ(findings_of(make_label_input(volume, "scan.nrrd", unmerged(), nullptr)),
+  EXPECT_EQ(findings_of(make_label_input(MemoryLabelSource(volume), "scan.nrrd", unmerged(), nullptr)),
             (Texts{"1 volume whose file gives no spacing: each voxel has the size 1"}));
 }
 
@@ -61,7 +62,7 @@ TEST(LabelInput, AllLabelsButTheOutsideOneAreMeshed) {
   LabelChoice choice = unmerged();
   choice.names = {{5, "liver"}, {6, "not there"}};
   const LabelInput p = prepare({0, 5, 5, -3, 2147483647, 0, 5}, choice);
-  EXPECT_EQ(p.regions, (Regions{0, 2, 2, 1, 3, 0, 2}));
+  EXPECT_EQ(voxels_of(p.regions), (Regions{0, 2, 2, 1, 3, 0, 2}));
   ASSERT_EQ(p.materials.size(), 3u);
   EXPECT_EQ(p.materials[0].name, "label_-3");
   EXPECT_EQ(p.materials[0].tag, -3);
@@ -82,13 +83,13 @@ TEST(LabelInput, AnotherOutsideLabel) {
   LabelChoice choice = unmerged();
   choice.outside_label = -7;
   const LabelInput p = prepare({0, -7, 1}, choice);
-  EXPECT_EQ(p.regions, (Regions{1, 0, 2}));
+  EXPECT_EQ(voxels_of(p.regions), (Regions{1, 0, 2}));
   EXPECT_EQ(p.materials[0].name, "label_0");
 }
 
 TEST(LabelInput, WithoutOutsideAllIsMeshed) {
   const LabelInput p = prepare({1, 1, 2}, unmerged());
-  EXPECT_EQ(p.regions, (Regions{1, 1, 2}));
+  EXPECT_EQ(voxels_of(p.regions), (Regions{1, 1, 2}));
   EXPECT_EQ(findings_of(p), Texts{"3 voxels, none of them outside (label 0): all meshed, up to the border of "
                                   "the volume"});
 }
@@ -97,10 +98,10 @@ TEST(LabelInput, WhatIsNotChosenIsOutside) {
   LabelChoice choice = unmerged();
   choice.labels = {{8, 9}, {-4, -3}, {5, 8}, {6, 6}};
   const LabelInput p = prepare({0, 1, 5, 7, -3, 9, 10, -5, 6, 4}, choice);
-  EXPECT_EQ(p.regions, (Regions{0, 0, 2, 4, 1, 5, 0, 0, 3, 0}));
+  EXPECT_EQ(voxels_of(p.regions), (Regions{0, 0, 2, 4, 1, 5, 0, 0, 3, 0}));
   EXPECT_EQ(p.materials.size(), 5u);
   choice.labels = {{1, 2147483647}};
-  EXPECT_EQ(prepare({0, 1, 5, -7}, choice).regions, (Regions{0, 1, 2, 0}));
+  EXPECT_EQ(voxels_of(prepare({0, 1, 5, -7}, choice).regions), (Regions{0, 1, 2, 0}));
 }
 
 TEST(LabelInput, ChosenLabelsThatAreNotThere) {
@@ -176,7 +177,7 @@ TEST(LabelInput, TooManyLabels) {
   std::vector<MaterialTag> labels;
   for (MaterialTag i = 0; i <= 60000; ++i) labels.push_back(i * 30000);
   EXPECT_EQ(prepare(labels, unmerged()).materials.size(), 60000u);
-  EXPECT_EQ(prepare(labels, unmerged()).regions.back(), 60000u);
+  EXPECT_EQ(prepare(labels, unmerged()).regions[60000], 60000u);
   labels.push_back(7);
   EXPECT_NE(refusal<InputError>(labels, unmerged()).find("more than 60000 labels"), std::string::npos);
   LabelChoice choice = unmerged();
@@ -195,7 +196,7 @@ TEST(LabelInput, IslandsAreMergedAndReported) {
   // Voxel i is at (10, 20 + 2 i, 30).
   const LabelInput p = prepare(
       {0, 0, 0, 5, 5, 5, 7, 5, 5, 5, 9, 9, 9, 9, 0, 9, 9, 9, 5, 5, 9, 9, 5, 9, 8, 8, 9, 9, 9}, choice);
-  EXPECT_EQ(p.regions,
+  EXPECT_EQ(voxels_of(p.regions),
             (Regions{0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2, 2}));
   ASSERT_EQ(p.materials.size(), 2u);
   EXPECT_EQ(p.materials[0].tag, 5);
@@ -238,7 +239,7 @@ TEST(LabelInput, ManyLabelsWithIslandsShareAFinding) {
 
 TEST(LabelInput, NothingIsMergedWhereNoIslandIsLarge) {
   const LabelInput p = prepare({0, 1, 1, 2}, LabelChoice());
-  EXPECT_EQ(p.regions, (Regions{0, 1, 1, 2}));
+  EXPECT_EQ(voxels_of(p.regions), (Regions{0, 1, 1, 2}));
   EXPECT_EQ(findings_of(p), Texts{"3 islands of voxels, none of which has 8: kept as they are"});
   EXPECT_EQ(p.merged_islands, 0u);
 }
@@ -256,7 +257,7 @@ TEST(LabelInput, MergedVoxelsAreThoseWhoseLabelChanged) {
     LabelInput first;
     for (unsigned threads : {1u, 4u}) {
       const ThreadLimit limit(threads);
-      const LabelInput p = make_label_input(volume, "scan.nrrd", choice, nullptr);
+      const LabelInput p = make_label_input(MemoryLabelSource(volume), "scan.nrrd", choice, nullptr);
       std::size_t changed = 0;
       std::vector<std::size_t> counts(p.materials.size() + 1, 0);
       for (std::size_t i = 0; i < before.size(); ++i) {
@@ -266,17 +267,82 @@ TEST(LabelInput, MergedVoxelsAreThoseWhoseLabelChanged) {
       EXPECT_EQ(p.merged_voxels, changed);
       for (std::size_t m = 0; m < p.materials.size(); ++m) EXPECT_EQ(p.materials[m].voxels, counts[m + 1]);
       if (threads > 1) {
-        EXPECT_EQ(p.regions, first.regions);
+        EXPECT_EQ(voxels_of(p.regions), voxels_of(first.regions));
       }
       first = p;
     }
   }
 }
 
+/// Serves a volume in blocks; boxes from slice `first_bad` on fail.
+class BlockedSource final : public LabelSource {
+ public:
+  BlockedSource(const LabelVolume& volume, const VoxelIndex& block, int first_bad)
+      : LabelSource(volume), volume_(volume), block_(block), first_bad_(first_bad) {}
+  VoxelIndex block() const override { return block_; }
+
+ protected:
+  void read_box(const VoxelIndex& low, const VoxelIndex& high, std::span<MaterialTag> out) const override {
+    if (high[2] > first_bad_) throw InputError("slices before " + std::to_string(high[2]));
+    volume_.read(low, high, out);
+  }
+
+ private:
+  MemoryLabelSource volume_;
+  VoxelIndex block_;
+  int first_bad_;
+};
+
+TEST(LabelInput, VolumesAreReadInBlocksOfAnyShape) {
+  Random random(5);
+  LabelVolume volume = volume_of({});
+  volume.size = {90, 80, 150};
+  MaterialTag label = 0;
+  for (int i = 0; i < 90 * 80 * 150; ++i) {
+    if (random.below(30) == 0) label = static_cast<MaterialTag>(random.below(60)) - 20;
+    volume.labels.push_back(label);
+  }
+  const LabelInput whole = make_label_input(MemoryLabelSource(volume), "scan.nrrd", unmerged(), nullptr);
+  for (std::size_t i = 0; i < volume.labels.size(); ++i) {
+    const RegionIndex region = whole.regions[i];
+    ASSERT_EQ(region == outside_region ? 0 : whole.materials[region - 1u].tag, volume.labels[i]);
+  }
+  for (const VoxelIndex& block :
+       {VoxelIndex{1, 1, 1}, {64, 64, 64}, {90, 80, 1}, {1000, 1000, 1000}, {7, 90, 45}})
+    for (const unsigned threads : {1u, 4u}) {
+      const ThreadLimit limit(threads);
+      const LabelInput p =
+          make_label_input(BlockedSource(volume, block, 150), "scan.nrrd", unmerged(), nullptr);
+      EXPECT_EQ(voxels_of(p.regions), voxels_of(whole.regions));
+      ASSERT_EQ(p.materials.size(), whole.materials.size());
+      for (std::size_t m = 0; m < p.materials.size(); ++m) {
+        EXPECT_EQ(p.materials[m].tag, whole.materials[m].tag);
+        EXPECT_EQ(p.materials[m].voxels, whole.materials[m].voxels);
+      }
+      EXPECT_EQ(
+          error_of<InputError>([&] {
+            (void)make_label_input(BlockedSource(volume, {90, 80, 20}, 70), "scan.nrrd", unmerged(), nullptr);
+          }),
+          "slices before 80");
+    }
+}
+
+TEST(LabelInput, LayersThatDoNotFitInMemoryAreRefused) {
+  LabelVolume volume = volume_of({});
+  volume.size = {200, 200, 10};
+  volume.labels.resize(400000, 1);
+  const MemoryLimit limit(1e6);
+  EXPECT_NE(error_of<OutputError>([&] {
+              (void)make_label_input(MemoryLabelSource(volume), "scan.nrrd", unmerged(), nullptr);
+            }).find("the labels of scan.nrrd would take"),
+            std::string::npos);
+}
+
 TEST(LabelInput, CanBeInterrupted) {
   Progress progress;
   progress.cancel();
-  EXPECT_THROW(make_label_input(volume_of({0, 1}), "scan.nrrd", LabelChoice(), &progress), Interrupted);
+  EXPECT_THROW(make_label_input(MemoryLabelSource(volume_of({0, 1})), "scan.nrrd", LabelChoice(), &progress),
+               Interrupted);
 }
 
 }  // namespace

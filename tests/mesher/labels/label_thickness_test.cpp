@@ -170,6 +170,28 @@ TEST(LabelThickness, TheSameAsByBoxesTriedEverywhere) {
   EXPECT_GT(thin_volumes, 40u);
 }
 
+TEST(LabelThickness, TheSameSlabBySlab) {
+  Random random(4);
+  for (const Size& sides : {Size{2, 2, 2}, Size{1, 3, 2}, Size{3, 3, 9}, Size{2, 2, 1}})
+    for (int round = 0; round < 5; ++round) {
+      std::vector<std::array<int, 4>> boxes;  // low corners, labels
+      for (int i = 0; i < 250; ++i)
+        boxes.push_back({static_cast<int>(random.below(10)), static_cast<int>(random.below(9)),
+                         static_cast<int>(random.below(150)), static_cast<int>(random.below(3))});
+      std::vector<MaterialTag> voxels(11 * 10 * 150, 0);
+      voxels[0] = 1;
+      for (const auto& [x, y, z, label] : boxes)
+        for (int k = 0; k < 8 * 4 * 12; ++k)
+          if (x + k % 4 < 11 && y + k / 4 % 4 < 10 && z + k / 16 < 150)
+            voxels[((z + k / 16) * 10 + y + k / 4 % 4) * 11 + x + k % 4] = label;
+      const LabelInput labels =
+          make_labels({11, 10, 150}, [&](int x, int y, int z) { return voxels[(z * 10 + y) * 11 + x]; });
+      const std::vector<std::size_t> whole = thin_voxels(labels, sides, std::size_t{1} << 28, nullptr);
+      EXPECT_FALSE(whole.empty());
+      EXPECT_EQ(thin_voxels(labels, sides, 0, nullptr), whole);
+    }
+}
+
 /// A cube of 12 voxels in a volume of 20, of label 1 except for the caller's labels.
 LabelInput cube(const VoxelLabels& label) {
   return make_labels({20, 20, 20}, [&](int x, int y, int z) {

@@ -97,7 +97,8 @@ struct Input {
   Role role = Role::body;
 };
 
-/// Reads or moves out the value of an input; files are read by the readers of io.h.
+/// Reads or moves out the value of an input; files are read by the readers of io.h. Volumes in files are read
+/// only when their source is.
 ///
 /// \param dropped receives the contents that were not kept; may be null
 /// \param waited time spent waiting for a stream, seconds; added to the previous value
@@ -105,7 +106,7 @@ struct Input {
 /// \throws InputError in the cases of the readers
 TriangleMesh take_surface(Input& input, std::vector<Dropped>* dropped, double& waited);
 ReadTetMesh take_tet_mesh(Input& input, const ReadTetMeshOptions& options, double& waited);
-LabelVolume take_label_volume(Input& input, double& waited);
+std::unique_ptr<LabelSource> take_label_source(Input& input, double& waited);
 
 /// Whether the path has the extension .vdb, in upper or lower case.
 bool is_vdb(const std::string& path);
