@@ -102,25 +102,28 @@ void drop_unused_points(TetMesh& surface) {
   surface.points = std::move(points);
 }
 
-/// Joins the surfaces of the dense meshes.
-TetMesh joined_surface(const std::vector<BrickPart>& parts) {
+/// Joins the surfaces of the dense meshes, and frees each of them.
+TetMesh joined_surface(std::vector<BrickPart>& parts) {
   std::vector<PiecePoints> pieces;
   pieces.reserve(parts.size());
   for (const BrickPart& part : parts) pieces.push_back({part.surface.points, part.surface_shared});
-  const JoinedPoints points = join_points(pieces);
+  JoinedPoints points = join_points(pieces);
   TetMesh all;
   all.points.resize(points.count);
+  std::size_t faces = 0;
+  for (const BrickPart& part : parts) faces += part.surface.interfaces.size();
+  all.interfaces.reserve(faces);
   std::vector<KeyedFace> cut;
   for (std::size_t b = 0; b < parts.size(); ++b) {
-    const std::vector<Index>& numbers = points.numbers[b];
-    const TetMesh& surface = parts[b].surface;
+    const std::vector<Index> numbers = std::move(points.numbers[b]);
+    const TetMesh surface = std::exchange(parts[b].surface, {});
     for (std::size_t p = 0; p < numbers.size(); ++p) all.points[numbers[p]] = surface.points[p];
     const auto renumbered = [&](InterfaceTriangle t) {
       for (Index& p : t.ids) p = numbers[p];
       return t;
     };
     for (const InterfaceTriangle& t : surface.interfaces) all.interfaces.push_back(renumbered(t));
-    for (const InterfaceTriangle& t : parts[b].cut_faces) {
+    for (const InterfaceTriangle& t : std::exchange(parts[b].cut_faces, {})) {
       const InterfaceTriangle face = renumbered(t);
       cut.push_back({ascending(face.ids), face});
     }
@@ -154,7 +157,7 @@ std::vector<std::size_t> meeting_bricks(const TetMesh& mesh, const BrickOf& bric
 
 }  // namespace
 
-GatheredMesh gather(const std::vector<BrickPart>& parts, std::map<MaterialTag, std::string> names) {
+GatheredMesh gather(std::vector<BrickPart>& parts, std::map<MaterialTag, std::string> names) {
   GatheredMesh all;
   all.dense = statistics_of(parts);
   for (const BrickPart& part : parts) {
@@ -162,11 +165,6 @@ GatheredMesh gather(const std::vector<BrickPart>& parts, std::map<MaterialTag, s
     all.lattice_tets += part.lattice_tets;
     all.isolated_vertices += part.isolated_vertices;
   }
-  all.original.surface = joined_surface(parts);
-  MeshStatistics faces = mesh_statistics(all.original.surface);
-  all.dense.interfaces = std::move(faces.interfaces);
-  all.dense.junction_edges = faces.junction_edges;
-
   std::vector<std::vector<std::uint8_t>> shared;
   std::vector<PiecePoints> pieces;
   std::size_t tets = 0;
@@ -214,8 +212,17 @@ GatheredMesh gather(const std::vector<BrickPart>& parts, std::map<MaterialTag, s
     const auto moved = std::find_if(t.ids.begin(), t.ids.end(), [&](Index p) { return !shared_points[p]; });
     return moved == t.ids.end() ? parts.size() : brick_of_point[*moved];
   });
+  if (!all.meeting.empty()) return all;
+  for (BrickPart& part : parts) {
+    part.mesh = {};
+    part.flags = {};
+  }
   for (const auto& [tag, material] : all.dense.materials) all.original.volumes[tag] = material.volume;
   all.original.tets = all.dense.tets;
+  all.original.surface = joined_surface(parts);
+  MeshStatistics faces = mesh_statistics(all.original.surface);
+  all.dense.interfaces = std::move(faces.interfaces);
+  all.dense.junction_edges = faces.junction_edges;
   return all;
 }
 

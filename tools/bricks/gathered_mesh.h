@@ -23,8 +23,9 @@ struct GatheredMesh {
 };
 
 /// Joins the parts of all bricks of a volume.
-/// \param parts in the order of BrickMesher::bricks()
+/// \param parts in the order of BrickMesher::bricks(). Meshes and surfaces are moved out of them, since both
+///   together would take much memory, unless bricks meet: then the result lacks the original
 /// \param names of the materials
-GatheredMesh gather(const std::vector<BrickPart>& parts, std::map<MaterialTag, std::string> names);
+GatheredMesh gather(std::vector<BrickPart>& parts, std::map<MaterialTag, std::string> names);
 
 }  // namespace tetwright

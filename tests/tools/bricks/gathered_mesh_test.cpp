@@ -158,7 +158,7 @@ void expect_equal(const MeshStatistics& a, const MeshStatistics& b) {
 
 void expect_whole(const TetMesh& whole, std::vector<BrickPart> parts) {
   const MeshStatistics statistics = mesh_statistics(whole);
-  const GatheredMesh gathered = gather(std::move(parts), whole.material_names);
+  const GatheredMesh gathered = gather(parts, whole.material_names);
   EXPECT_EQ(gathered.mesh.points.size(), whole.points.size());
   EXPECT_TRUE(plain_tets(gathered.mesh) == plain_tets(whole));
   EXPECT_TRUE(plain_faces(gathered.mesh) == plain_faces(whole));
@@ -213,7 +213,8 @@ TEST(GatheredMesh, HalvesAndOctantsGiveTheWhole) {
 TEST(GatheredMesh, PartsMayBeEmptyOrWithoutNeighbours) {
   const TetMesh whole = whole_mesh();
   expect_whole(whole, cut(whole, 20, [](std::size_t, const Vec3& p) { return 2 * octant(p) + 3; }));
-  const GatheredMesh none = gather(std::vector<BrickPart>(3), {});
+  std::vector<BrickPart> empty(3);
+  const GatheredMesh none = gather(empty, {});
   EXPECT_TRUE(none.mesh.tets.empty());
   EXPECT_TRUE(none.mesh.interfaces.empty());
   EXPECT_TRUE(none.original.surface.interfaces.empty());
@@ -245,7 +246,8 @@ TEST(GatheredMesh, GivesTheSameBytesForAnyNumberOfThreads) {
   const TetMesh whole = whole_mesh();
   const auto with_threads_of = [&](unsigned threads) {
     const ThreadLimit limit(threads);
-    return gather(cut(whole, 8, [](std::size_t, const Vec3& p) { return octant(p); }), {});
+    std::vector<BrickPart> parts = cut(whole, 8, [](std::size_t, const Vec3& p) { return octant(p); });
+    return gather(parts, {});
   };
   const GatheredMesh a = with_threads_of(1), b = with_threads_of(3);
   EXPECT_EQ(a.mesh.points, b.mesh.points);
