@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <set>
 #include <utility>
 
 #include "common/message_text.h"
@@ -64,8 +66,11 @@ void LabelMasks::begin(LabelVolume& volume, const std::string& file) {
 }
 
 void LabelMasks::check_grid(LabelGrid& grid, const std::string& file) {
-  if (std::string before = grid.space; change_space(grid, result_.space) && converted_++ == 0)
-    other_space_ = std::move(before);
+  const std::string before = grid.space;
+  if (change_space(grid, result_.space))
+    ++converted_[before];
+  else if (before != result_.space)
+    ++unknown_[before.empty() ? "unknown" : before];
   bool same = grid.size == result_.size;
   const double allowed = InputTuning::Masks::same_grid * result_.directions.colwise().norm().minCoeff();
   for (int corner = 0; corner < 8 && same; ++corner) {
@@ -167,14 +172,17 @@ void LabelMasks::report(Joined& joined) const {
                                                              : first + "+" + second,
                                centre(o.first_voxel)});
   }
+  const std::size_t in_several =
+      static_cast<std::size_t>(std::count(in_several_.begin(), in_several_.end(), true));
   if (most)
     joined.findings.push_back(
         {.code = DiagnosticCode::masks_overlap,
          .file = first_file_,
-         .what = "voxels in several masks, in " + std::to_string(overlaps_.size()) +
-                 (overlaps_.size() == 1 ? " pair" : " pairs") + ", most in '" + name_of(most->first) +
-                 "' and '" + name_of(most->second) + "' (" + std::to_string(most->voxels) + ")",
-         .count = static_cast<std::size_t>(std::count(in_several_.begin(), in_several_.end(), true)),
+         .what = (in_several == 1 ? "voxel" : "voxels") + std::string(" in several masks, in ") +
+                 std::to_string(overlaps_.size()) + (overlaps_.size() == 1 ? " pair" : " pairs") +
+                 ", most in '" + name_of(most->first) + "' and '" + name_of(most->second) + "' (" +
+                 std::to_string(most->voxels) + ")",
+         .count = in_several,
          .done = rule_ == OverlapRule::later   ? "they belong to the later one"
                  : rule_ == OverlapRule::first ? "they belong to the first one"
                                                : "materials of their own",
@@ -193,23 +201,29 @@ void LabelMasks::report(Joined& joined) const {
     if (count > 0)
       joined.findings.push_back({.code = DiagnosticCode::masks_empty,
                                  .file = first_file_,
-                                 .what = what + names,
+                                 .what = (count == 1 ? "mask " : "masks ") + std::string(what) + names,
                                  .count = count,
                                  .done = "not in the mesh"});
   };
-  list("masks without a voxel: ", [](const Material& m) { return m.voxels == 0; });
-  if (most) {
+  list("without a voxel: ", [](const Material& m) { return m.voxels == 0; });
+  // With OverlapRule::material, a mask inside another one is a material of another name.
+  if (most && rule_ != OverlapRule::material) {
     std::map<MaterialTag, std::size_t> left =
         count_labels_at(result_.labels.size(), [&](std::size_t i) { return result_.labels[i]; });
-    list("masks whose voxels all belong to others: ",
+    list("without a voxel that does not belong to others: ",
          [&](const Material& m) { return m.voxels > 0 && left[m.mask.tag] == 0; });
   }
-  if (converted_ > 0)
-    joined.findings.push_back({.code = DiagnosticCode::space_converted,
-                               .file = first_file_,
-                               .what = "inputs in another space, " + other_space_,
-                               .count = converted_,
-                               .done = "brought into that of the first one, " + result_.space});
+  for (const auto& [spaces, done] :
+       {std::pair(&converted_, "brought into that of the first one, " + result_.space),
+        std::pair(&unknown_, "taken as they are, since it cannot be compared with that of the first one, " +
+                                 (result_.space.empty() ? std::string("unknown") : result_.space))})
+    for (const auto& [space, count] : *spaces)
+      joined.findings.push_back(
+          {.code = DiagnosticCode::space_converted,
+           .file = first_file_,
+           .what = (count == 1 ? "input" : "inputs") + std::string(" in another space, ") + space,
+           .count = count,
+           .done = done});
 }
 
 LabelMasks::Joined LabelMasks::join(const std::string& files) && {
@@ -217,13 +231,32 @@ LabelMasks::Joined LabelMasks::join(const std::string& files) && {
     throw NothingToMeshError(files + ": no mask has a voxel");
   Joined joined;
   report(joined);
-  MaterialTag next = 0;
-  for (const Material& m : materials_) next = std::max(next, m.mask.tag);
-  for (std::size_t k = 0; k < shared_names_.size(); ++k)
-    result_.names[next + 1 + static_cast<MaterialTag>(k)] = shared_names_[k];
+  MaterialTag last = 0;
+  for (const auto& [name, tag] : tags_) last = std::max(last, tag);
+  std::set<std::string> used;
+  for (const Material& m : materials_) {
+    last = std::max(last, m.mask.tag);
+    used.insert(m.mask.name);
+  }
+  std::vector<MaterialTag> shared_tags;
+  for (const std::string& sum : shared_names_) {
+    std::string name = sum;
+    for (int k = 2; !used.insert(name).second; ++k) name = sum + "_" + std::to_string(k);
+    const auto known = tags_.find(name);
+    if (known == tags_.end() && last == std::numeric_limits<MaterialTag>::max())
+      throw InputError(files, 0,
+                       "no label above " + std::to_string(last) + " is left for the material '" + name +
+                           "', where masks overlap; give the masks smaller labels");
+    shared_tags.push_back(known != tags_.end() ? known->second : ++last);
+    if (!result_.names.emplace(shared_tags.back(), name).second)
+      throw InputError(files, 0,
+                       "the label " + std::to_string(shared_tags.back()) + " of the material '" + name +
+                           "', where masks overlap, is that of another one; give it one of its own");
+  }
   parallel_for(0, result_.labels.size(), InputGrains::voxels, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      if (result_.labels[i] < 0) result_.labels[i] = next - result_.labels[i];
+      if (MaterialTag& label = result_.labels[i]; label < 0)
+        label = shared_tags[static_cast<std::size_t>(-label - 1)];
   });
   joined.volume = std::move(result_);
   return joined;

@@ -66,6 +66,17 @@ def test_gives_the_bytes_of_the_program(tmp_path, ball, ball_arrays, prepared):
     assert (tmp_path / "s.json").exists()
 
 
+def test_several_arrays_are_masks():
+    masks = {name: np.zeros((12, 12, 12), np.uint8) for name in ("liver", "tumour")}
+    masks["liver"][2:8, 2:10, 2:10] = 1
+    masks["tumour"][6:11, 2:10, 2:10] = 255
+    mesh = tetwright.mesh(masks)
+    assert mesh.material_names == {1: "liver", 2: "tumour"}
+    assert "128 voxels in several masks, in 1 pair" in mesh.notes[0]
+    with pytest.raises(tetwright.InputError, match="overlap in 128 voxels"):
+        tetwright.mesh(masks, on_overlap="error")
+
+
 def test_labels_give_the_bytes_of_the_program(tmp_path):
     labels = labels_of_two_balls()
     with open(tmp_path / "v.nrrd", "wb") as file:

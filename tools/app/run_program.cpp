@@ -93,9 +93,10 @@ int run_program(int argc, char** argv, BrickTeam* team) {
     CommandLine line;
     if (!parse_command_line(argc, argv, line)) return 0;
     if (team) join(*team, line);
-    if (!line.options.bricks.scratch.empty())
+    line.options.bricks.when_kept = [] {
       say_when_interrupted(
           "tetwright: interrupted; the same call goes on from the bricks that are finished\n");
+    };
     const ExitStatus status = run_command(line);
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
       return fail(ExitStatus::output_failed,

@@ -267,6 +267,7 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double de
   const BrickJob job = describe(labels, options, plan.cells, run);
   if (!run.options.bricks.scratch.empty() && leads)
     run.scratch = std::make_shared<BrickScratch>(run.options.bricks.scratch, job);
+  if (run.scratch && run.options.bricks.when_kept) run.options.bricks.when_kept();
   if (leads)
     check_space(BrickEstimator(labels, options, dense_tets, *run.options.target.tets, run.scratch != nullptr),
                 plan, run.scratch.get(), run);

@@ -6,8 +6,10 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 
+#include "common/lower_case.h"
 #include "common/message_text.h"
 #include "common/unique_names.h"
 #include "common/utf8.h"
@@ -53,9 +55,9 @@ std::vector<NamedMask> segments_of(const LabelVolume& layer, MaterialTag outside
 /// Gives masks their tags.
 class MaskTags {
  public:
-  explicit MaskTags(const LabelChoice& choice) : file_(choice.names_file) {
-    for (const auto& [tag, name] : choice.names) by_name_.emplace(name, tag);
-  }
+  /// \param by_name tags that `file` gives to names
+  MaskTags(std::string file, const std::map<std::string, MaterialTag>& by_name)
+      : file_(std::move(file)), by_name_(by_name) {}
 
   /// \param wanted tag that the mask's file has for it; 0: none
   MaterialTag tag_of(const std::string& name, MaterialTag wanted, const std::string& file) {
@@ -78,7 +80,7 @@ class MaskTags {
 
  private:
   std::string file_;
-  std::map<std::string, MaterialTag> by_name_;
+  const std::map<std::string, MaterialTag>& by_name_;
   std::set<MaterialTag> used_;
   MaterialTag last_ = 0;
 };
@@ -92,6 +94,45 @@ bool labels_differ(const std::vector<std::vector<NamedMask>>& layers) {
   return true;
 }
 
+/// The files in a folder, in the order of their names.
+struct FolderFiles {
+  std::vector<std::string> volumes;  ///< but for .tif
+  std::vector<std::string> others;   ///< surfaces, tet meshes and .vdb files
+  bool tiff = false;
+};
+
+FolderFiles files_of(const std::string& folder) {
+  FolderFiles files;
+  std::error_code error;
+  std::set<std::string> headers;  // without their extension
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const std::string file = entry.path().string(), extension = lower_case(entry.path().extension().string());
+    if (entry.path().filename().string().starts_with('.')) continue;
+    if (extension == ".hdr") headers.insert(file_stem(file));
+    const FileKind kind = file_kind(file);
+    if (extension == ".tif" || extension == ".tiff")
+      files.tiff = true;
+    else if (kind == FileKind::volume)
+      files.volumes.push_back(file);
+    else if (kind != FileKind::unknown || is_vdb(file))
+      files.others.push_back(file);
+  }
+  // The two files of a pair are one volume.
+  std::erase_if(files.volumes, [&](const std::string& file) {
+    return lower_case(fs::path(file).extension().string()) == ".img" && headers.contains(file_stem(file));
+  });
+  std::sort(files.volumes.begin(), files.volumes.end());
+  std::sort(files.others.begin(), files.others.end());
+  return files;
+}
+
+/// Name of the mask in a file: that of the file, without the second extension of 3D Slicer's segmentations.
+std::string mask_name(const std::string& file) {
+  const std::string stem = file_stem(file);
+  constexpr std::string_view segmentation = ".seg";
+  return stem.ends_with(segmentation) ? stem.substr(0, stem.size() - segmentation.size()) : stem;
+}
+
 }  // namespace
 
 std::vector<Input> with_masks_of_folders(std::vector<Input> inputs, PrepareReport& report) {
@@ -99,41 +140,39 @@ std::vector<Input> with_masks_of_folders(std::vector<Input> inputs, PrepareRepor
   for (Input& input : inputs) {
     std::error_code error;
     if (!std::holds_alternative<InputFile>(input.value) || input.role != Input::Role::body ||
-        input.kind() == FileKind::volume || !fs::is_directory(input.name, error)) {
+        !fs::is_directory(input.name, error)) {
       all.push_back(std::move(input));
       continue;
     }
-    std::vector<std::string> volumes, others;
-    for (const fs::directory_entry& entry : fs::directory_iterator(input.name, error)) {
-      const std::string name = entry.path().filename().string();
-      if (name.starts_with('.')) continue;
-      (file_kind(entry.path().string()) == FileKind::volume ? volumes : others)
-          .push_back(entry.path().string());
-    }
-    std::sort(volumes.begin(), volumes.end());
-    // The two files of a pair are one volume.
-    std::erase_if(volumes, [&](const std::string& file) {
-      return file.ends_with(".img") &&
-             std::binary_search(volumes.begin(), volumes.end(), fs::path(file).replace_extension(".hdr"));
-    });
-    if (volumes.empty()) {
+    const FolderFiles files = files_of(input.name);
+    if (input.kind() == FileKind::volume) {
+      // A zarr array, or slices.
+      if (files.tiff && !files.volumes.empty())
+        throw UsageError(input.name + " has slices (.tif) and other volumes, such as " +
+                         fs::path(files.volumes.front()).filename().string() +
+                         "; keep them in different folders, or give the files");
       all.push_back(std::move(input));
       continue;
     }
+    if (files.volumes.empty())
+      throw UsageError(input.name +
+                       ": there is no volume in this folder, in which each volume would be a mask (" +
+                       known_extensions(FileKind::volume) + "); folders in it are not searched");
     if (!input.material.empty())
       throw UsageError(input.name +
                        " is a folder of masks, each a material with the name of its file; leave "
                        "out the name " +
                        input.material);
-    std::sort(others.begin(), others.end());
-    if (!others.empty())
+    if (!files.others.empty())
       report.diagnostics.push_back(
           {.code = DiagnosticCode::input_dropped,
            .file = input.name,
-           .what = "files that are no volumes, the first " + fs::path(others.front()).filename().string(),
-           .count = others.size(),
+           .what =
+               (files.others.size() == 1 ? "file that is no mask, " : "files that are no masks, the first ") +
+               fs::path(files.others.front()).filename().string(),
+           .count = files.others.size(),
            .done = "not read"});
-    for (const std::string& file : volumes) all.push_back(Input(file).as(file_stem(file)));
+    for (const std::string& file : files.volumes) all.push_back(Input(file).as(mask_name(file)));
   }
   return all;
 }
@@ -143,8 +182,11 @@ bool are_masks(const std::vector<Input>& volumes) {
 }
 
 LabelVolume join_masks(std::vector<Input>& volumes, LabelChoice& choice, PrepareRun& run) {
-  LabelMasks masks(run.options.bodies.overlap);
-  MaskTags tags(choice);
+  std::map<std::string, MaterialTag> known;
+  if (!choice.names_file.empty())
+    for (const auto& [tag, name] : choice.names) known.emplace(name, tag);
+  LabelMasks masks(run.options.bodies.overlap, known);
+  MaskTags tags(choice.names_file, known);
   UniqueNames names(printable_name);
   (void)names.add("outside");
   double done = 0;
@@ -155,12 +197,21 @@ LabelVolume join_masks(std::vector<Input>& volumes, LabelChoice& choice, Prepare
     std::vector<std::vector<NamedMask>> of_layers;
     const bool layered = is_layered(input);
     if (layered) {
+      if (!input.material.empty() && input.material != mask_name(file))
+        throw UsageError(file +
+                         " has several segments, each a material with its own name; leave out the name " +
+                         input.material);
       layers = read_label_layers(file);
       for (const LabelVolume& layer : layers) of_layers.push_back(segments_of(layer, choice.outside_label));
     } else {
       layers.push_back(read_all(*take_label_source(input, run.seconds_waited), file));
       const MaterialTag label = label_of_mask(layers.front(), choice.outside_label, file);
-      of_layers.push_back({{label, input.material.empty() ? input.material_name() : input.material}});
+      const auto named = layers.front().names.find(label);
+      const std::string own = input.is_value() ? input.name : mask_name(file);
+      // A name that is given comes before that in the file, and that before the name of the file.
+      of_layers.push_back({{label, !input.material.empty() && input.material != own ? input.material
+                                   : named != layers.front().names.end()            ? named->second
+                                                                                    : own}});
     }
     const bool keep_labels = layered && volumes.size() == 1 && labels_differ(of_layers);
     for (std::size_t l = 0; l < layers.size(); ++l) {
@@ -168,11 +219,12 @@ LabelVolume join_masks(std::vector<Input>& volumes, LabelChoice& choice, Prepare
       for (const NamedMask& mask : of_layers[l]) {
         const std::string name = names.add(mask.name);
         if (name != printable_name(mask.name))
-          run.report.diagnostics.push_back({.code = DiagnosticCode::names_qualified,
-                                            .file = file,
-                                            .what = "another mask called '" + printable_name(mask.name) + "'",
-                                            .count = 1,
-                                            .done = "called '" + name + "' in the mesh"});
+          run.report.diagnostics.push_back(
+              {.code = DiagnosticCode::names_qualified,
+               .file = file,
+               .what = "mask called '" + printable_name(mask.name) + "' like another one",
+               .count = 1,
+               .done = "called '" + name + "' in the mesh"});
         added[mask.label] = {name, tags.tag_of(name, keep_labels ? mask.label : 0, file)};
       }
       // A mask without voxels has the outside label, which no voxel of a mask has.

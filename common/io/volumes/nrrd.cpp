@@ -250,9 +250,11 @@ struct NrrdFile {
   NrrdFile(TextScanner& in, std::int64_t max_voxels, bool layered = false)
       : fields(read_nrrd_header(in, segments)) {
     if (segments.layers() > 1 && !layered)
-      fields.fail("sizes", "its segments overlap, in " + std::to_string(segments.layers()) +
-                               " layers; each voxel needs one label: export the segmentation as a label map "
-                               "(3D Slicer: Segmentations, Export/import), or save it without overlap");
+      fields.fail("sizes",
+                  "its segments overlap, in " + std::to_string(segments.layers()) +
+                      " layers; each voxel needs one label: give it as a file, whose segments are masks, "
+                      "export the segmentation as a label map (3D Slicer: Segmentations, "
+                      "Export/import), or save it without overlap");
     const std::string named = fields.lower_text("encoding");
     if (named == "gzip" || named == "gz")
       encoding = NrrdEncoding::gzip;

@@ -58,6 +58,9 @@ bool known_field(const std::string& field) {
   return std::find(names.begin(), names.end(), field) != names.end();
 }
 
+/// No segmentation has as many layers; sums with larger numbers could overflow.
+constexpr std::int64_t max_layer = std::int64_t{1} << 31;
+
 bool is_data_file(std::string_view field) {
   const std::string name = lower_case(trimmed(field));
   return name == "data file" || name == "datafile";
@@ -86,7 +89,7 @@ void NrrdSegments::add(std::string_view key, std::string_view value) {
   else if (what == "Color")
     segment.colour = parse_colour(value);
   else if (what == "Layer" && parse_number(trimmed(value), segment.layer))
-    layers_ = std::max(layers_, segment.layer + 1);
+    layers_ = std::max(layers_, std::min(segment.layer, max_layer) + 1);
 }
 
 void NrrdSegments::give_names_and_colours(LabelGrid& volume, std::int64_t layer) const {

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tetwright/label_volume.h"
@@ -23,7 +24,10 @@ class LabelMasks {
  public:
   /// \param rule to which mask a voxel belongs that several have: OverlapRule::later the one that was added
   ///   last, ::first the first one, ::material a material of its own, called a+b after masks a and b
-  explicit LabelMasks(OverlapRule rule) : rule_(rule) {}
+  /// \param tags for names of such materials: those of OverlapRule::material that are not among them get tags
+  ///   above all of these and of the masks
+  explicit LabelMasks(OverlapRule rule, std::map<std::string, MaterialTag> tags = {})
+      : rule_(rule), tags_(std::move(tags)) {}
 
   /// Adds the masks of a volume; their labels are the keys of `masks`. Voxels of other labels, and of
   /// `outside`, belong to none. All volumes have the grid of the first one, to a thousandth of a voxel. A
@@ -38,11 +42,14 @@ class LabelMasks {
     /// Has the grid of the first volume, 0 where no mask has a voxel, and the names and colours of all
     /// materials.
     LabelVolume volume;
-    std::vector<OverlapReport> overlaps;  ///< by pair, in the order of the masks
+    /// By pair, in the order of the masks. A voxel in more than two counts where it passed from one to
+    /// another.
+    std::vector<OverlapReport> overlaps;
     std::vector<Diagnostic> findings;
   };
   /// \param files what the masks come from, for messages
   /// \throws NothingToMeshError if no mask has a voxel
+  /// \throws InputError if no tags are left for the materials of OverlapRule::material
   Joined join(const std::string& files) &&;
 
  private:
@@ -62,6 +69,7 @@ class LabelMasks {
   void report(Joined& joined) const;
 
   OverlapRule rule_;
+  std::map<std::string, MaterialTag> tags_;  ///< by name
   LabelVolume result_;
   std::string first_file_;
   std::vector<Material> materials_;
@@ -70,8 +78,8 @@ class LabelMasks {
   /// all tags are known.
   std::vector<bool> in_several_;
   std::vector<std::string> shared_names_;
-  std::size_t converted_ = 0;  ///< volumes brought into the space of the first one
-  std::string other_space_;
+  /// Spaces of volumes, and how many had each: brought into that of the first one, or taken as they are.
+  std::map<std::string, std::size_t> converted_, unknown_;
 };
 
 /// The label of a mask: the one that voxels have besides `outside`.

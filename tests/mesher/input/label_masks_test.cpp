@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include "tests/common/io/expect_error.h"
 
 namespace tetwright::label_masks_test {
@@ -60,6 +62,31 @@ TEST(LabelMasks, OtherRules) {
             "let the later one keep them with --on-overlap later");
 }
 
+TEST(LabelMasks, MaterialsOfOverlapsHaveNamesAndTagsOfTheirOwn) {
+  const auto joined = [](const std::map<std::string, MaterialTag>& tags, MaterialTag second) {
+    LabelMasks masks(OverlapRule::material, tags);
+    masks.add(row({1, 1, 0}), "a.nii", {{1, {"a", 1}}}, 0);
+    masks.add(row({0, 1, 0}), "b.nii", {{1, {"b", second}}}, 0);
+    masks.add(row({0, 0, 1}), "c.nii", {{1, {"a+b", 3}}}, 0);
+    return std::move(masks).join("masks").volume;
+  };
+  const LabelVolume unnamed = joined({}, 2);
+  EXPECT_EQ(unnamed.labels, (Labels{1, 4, 3}));
+  EXPECT_EQ(unnamed.names.at(4), "a+b_2");
+  EXPECT_EQ(joined({{"liver", 9}}, 2).labels, (Labels{1, 10, 3}));
+  EXPECT_EQ(joined({{"a+b_2", 7}}, 2).labels, (Labels{1, 7, 3}));
+  EXPECT_NE(error_of<InputError>([&] { joined({{"a+b_2", 3}}, 2); }), "");
+  EXPECT_EQ(
+      error_of<InputError>([&] { joined({}, std::numeric_limits<MaterialTag>::max()); }),
+      "masks: no label above 2147483647 is left for the material 'a+b_2', where masks overlap; give the "
+      "masks smaller labels");
+  // A mask inside another one is not lost.
+  LabelMasks nested(OverlapRule::material);
+  nested.add(row({1, 1, 1}), "a.nii", {{1, {"a", 1}}}, 0);
+  nested.add(row({0, 1, 0}), "b.nii", {{1, {"b", 2}}}, 0);
+  EXPECT_EQ(std::move(nested).join("masks").findings.size(), 1u);
+}
+
 TEST(LabelMasks, EmptyAndCoveredMasksAreNoted) {
   LabelMasks masks(OverlapRule::later);
   masks.add(row({0, 1, 0}), "a.nii", {{1, {"a", 1}}}, 0);
@@ -69,9 +96,9 @@ TEST(LabelMasks, EmptyAndCoveredMasksAreNoted) {
   EXPECT_EQ(joined.volume.labels, (Labels{3, 3, 0}));
   EXPECT_EQ(
       texts_of(joined.findings),
-      (Texts{"1 voxels in several masks, in 1 pair, most in 'a' and 'c' (1): they belong to the later one",
-             "1 masks without a voxel: 'b': not in the mesh",
-             "1 masks whose voxels all belong to others: 'a': not in the mesh"}));
+      (Texts{"1 voxel in several masks, in 1 pair, most in 'a' and 'c' (1): they belong to the later one",
+             "1 mask without a voxel: 'b': not in the mesh",
+             "1 mask without a voxel that does not belong to others: 'a': not in the mesh"}));
   LabelMasks none(OverlapRule::later);
   none.add(row({0, 0, 0}), "b.nii", {{0, {"b", 2}}}, 0);
   EXPECT_EQ(error_of<NothingToMeshError>([&] { std::move(none).join("masks"); }),
@@ -107,8 +134,17 @@ TEST(LabelMasks, OtherSpacesAreConverted) {
   const LabelMasks::Joined joined = std::move(masks).join("masks");
   EXPECT_EQ(joined.volume.labels, (Labels{1, 2, 0}));
   EXPECT_EQ(texts_of(joined.findings),
-            (Texts{"1 inputs in another space, left-posterior-superior: brought into that of the first one, "
+            (Texts{"1 input in another space, left-posterior-superior: brought into that of the first one, "
                    "right-anterior-superior"}));
+  LabelVolume unknown = row({0, 0, 1});
+  unknown.space = "scanner-xyz";
+  LabelMasks taken(OverlapRule::later);
+  taken.add(row({1, 0, 0}), "a.nii", {{1, {"a", 1}}}, 0);
+  taken.add(unknown, "b.nrrd", {{1, {"b", 2}}}, 0);
+  EXPECT_EQ(
+      texts_of(std::move(taken).join("masks").findings),
+      (Texts{"1 input in another space, scanner-xyz: taken as they are, since it cannot be compared with "
+             "that of the first one, right-anterior-superior"}));
   // Equal numbers are another position there.
   LabelVolume mirrored = row({0, 1, 0});
   mirrored.space = "left-posterior-superior";

@@ -3,6 +3,7 @@
 // Tests masks as inputs through the program: files, folders and overlapping segments.
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -98,7 +99,7 @@ TEST_F(Masks, ThatOverlapAreReported) {
   EXPECT_NE(refused.err.find("the masks 'all' and 'part2' overlap in "), std::string::npos) << refused.err;
   // All of the later one belongs to the first one.
   const Answer first = prepare(both + " --on-overlap first");
-  EXPECT_NE(first.err.find("masks whose voxels all belong to others: 'part2'"), std::string::npos)
+  EXPECT_NE(first.err.find("mask without a voxel that does not belong to others: 'part2'"), std::string::npos)
       << first.err;
   EXPECT_EQ(prepare(path("organs.nrrd") + " --on-overlap first").status, 2);
 }
@@ -106,15 +107,45 @@ TEST_F(Masks, ThatOverlapAreReported) {
 TEST_F(Masks, ThatAreEmptyAreNoted) {
   write_mask("masks/absent.nrrd", [](MaterialTag) { return false; });
   write("masks/statistics.json", "{}");
+  write("masks/liver.stl", "");
   const Answer a = mesh(path("masks"));
   EXPECT_EQ(a.status, 0) << a.err;
-  EXPECT_NE(a.err.find("1 masks without a voxel: 'absent' (not in the mesh)"), std::string::npos) << a.err;
-  EXPECT_NE(a.err.find("1 files that are no volumes, the first statistics.json (not read)"),
-            std::string::npos)
-      << a.err;
+  EXPECT_NE(a.err.find("1 mask without a voxel: 'absent' (not in the mesh)"), std::string::npos) << a.err;
+  EXPECT_NE(a.err.find("1 file that is no mask, liver.stl (not read)"), std::string::npos) << a.err;
   const Answer none = prepare("--material nothing=" + path("masks/absent.nrrd"));
   EXPECT_EQ(none.status, 4);
   EXPECT_NE(none.err.find("no mask has a voxel"), std::string::npos) << none.err;
+}
+
+TEST_F(Masks, AFolderMayHavePairsOfFiles) {
+  // NIfTI: a header of 348 bytes in one file and 2 x 1 x 1 voxels in the other.
+  std::filesystem::create_directory(folder_ / "pairs");
+  std::string header(348, '\0');
+  const auto set16 = [&](std::size_t at, int value) {
+    header[at] = static_cast<char>(value & 0xff);
+    header[at + 1] = static_cast<char>(value >> 8);
+  };
+  set16(0, 348);
+  for (const auto& [axis, n] : {std::pair{0, 3}, {1, 8}, {2, 8}, {3, 8}})
+    set16(40 + 2 * static_cast<std::size_t>(axis), n);
+  set16(70, 2);  // bytes
+  set16(72, 8);
+  const float one = 1;
+  for (std::size_t k = 1; k <= 3; ++k) std::memcpy(header.data() + 76 + 4 * k, &one, sizeof one);
+  header.replace(344, 4, std::string("ni1\0", 4));
+  const std::string names = "pqrs";
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    write(std::string("pairs/") + names[k] + ".hdr", header);
+    std::string voxels(512, '\0');
+    for (std::size_t i = 128 * k; i < 128 * (k + 1); ++i) voxels[i] = 1;
+    write(std::string("pairs/") + names[k] + ".img", voxels);
+  }
+  const Answer a = run("mesh " + path("pairs") + " -o " + path("out.vtu") + " --stats " + path("s.json") +
+                       " --on-overlap error");
+  EXPECT_EQ(a.status, 0) << a.err;
+  const nlohmann::json labels = stats().at("input").at("volume").at("labels");
+  ASSERT_EQ(labels.size(), names.size());
+  for (std::size_t k = 0; k < names.size(); ++k) EXPECT_EQ(labels[k].at("name"), std::string(1, names[k]));
 }
 
 TEST_F(Masks, WrongInputsAreRefused) {
@@ -134,6 +165,15 @@ TEST_F(Masks, WrongInputsAreRefused) {
   EXPECT_EQ(names.status, 3);
   EXPECT_NE(names.err.find("two.txt: has no label called 'part2'"), std::string::npos) << names.err;
   EXPECT_EQ(prepare("--material all=" + path("masks")).status, 2);
+  std::filesystem::create_directory(folder_ / "empty");
+  const Answer empty = prepare(path("empty"));
+  EXPECT_EQ(empty.status, 2);
+  EXPECT_NE(empty.err.find("empty: there is no volume in this folder"), std::string::npos) << empty.err;
+  write("masks/slice.tif", "");
+  const Answer mixed = prepare(path("masks"));
+  EXPECT_EQ(mixed.status, 2);
+  EXPECT_NE(mixed.err.find("has slices (.tif) and other volumes, such as part1.nrrd"), std::string::npos)
+      << mixed.err;
 }
 
 TEST_F(Masks, OverlappingSegmentsAreLayers) {
@@ -160,6 +200,7 @@ TEST_F(Masks, OverlappingSegmentsAreLayers) {
   ASSERT_EQ(volume.at("labels").size(), 2u);
   EXPECT_EQ(volume.at("labels")[0].at("voxels"), 4 * 64);
   EXPECT_EQ(volume.at("labels")[1].at("voxels"), 3 * 64);
+  EXPECT_EQ(prepare("--material organ=" + path("s.seg.nrrd")).status, 2);
   write("cut.seg.nrrd", header + voxels.substr(0, 500));
   EXPECT_EQ(prepare(path("cut.seg.nrrd")).status, 3);
 }

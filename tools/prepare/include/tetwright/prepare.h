@@ -186,6 +186,8 @@ struct BrickOptions {
   /// Folder for finished bricks, made if it does not exist: they need no memory until all are finished, and a
   /// job that was stopped goes on from them. Empty: in memory.
   std::string scratch;
+  /// Called once bricks are about to be written to the scratch folder; may be empty.
+  std::function<void()> when_kept;
   /// Processes that make the bricks together; null: this one alone. Must outlive the call.
   BrickTeam* team = nullptr;
 };
