@@ -212,13 +212,15 @@ std::shared_ptr<const ReferenceSurface> reference_of(const TetMesh& mesh,
   return field;
 }
 
-void name_border_patches(TetMesh& mesh, const GridFrame& frame) {
+void name_border_patches(const std::vector<InterfaceTriangle>& faces, const GridFrame& frame, TetMesh& mesh) {
   const std::array<std::string, 6> names = border_names(frame.axes);
   std::array<std::set<MaterialTag>, 6> materials;
   std::set<InterfacePatch> patches;
-  for (const InterfaceTriangle& t : mesh.interfaces)
-    if (t.patch != 0 && patches.insert({t.pair(), t.patch}).second)
-      materials[t.patch - 1u].insert(t.material);
+  for (const InterfaceTriangle& t : faces) {
+    if (t.patch == 0) continue;
+    TETWRIGHT_CHECK(t.patch <= names.size());
+    if (patches.insert({t.pair(), t.patch}).second) materials[t.patch - 1u].insert(t.material);
+  }
   for (const InterfacePatch& patch : patches) {
     const std::size_t side = patch.second - 1u;
     const auto name = mesh.material_names.find(patch.first.first);
@@ -230,7 +232,7 @@ void name_border_patches(TetMesh& mesh, const GridFrame& frame) {
 
 void set_mesh(CutMesh cut, std::shared_ptr<const MaterialField> field, DenseMesh& result) {
   result.mesh = to_input_units(std::move(cut), *field);
-  if (field->volume()) name_border_patches(result.mesh, field->frame());
+  if (field->volume()) name_border_patches(result.mesh.interfaces, field->frame(), result.mesh);
   result.reference = reference_of(result.mesh, field);
   result.field = std::move(field);
 }

@@ -75,7 +75,8 @@ std::shared_ptr<const ReferenceSurface> reference_of(const TetMesh& mesh,
 /// Names the patches 1 to 6 of `interfaces`, on the sides of a volume's box: "border_x_min" and so on for the
 /// coordinate along which the axis runs most; with the name of its material in front ("bone:border_x_min") if
 /// several reach that side.
-void name_border_patches(TetMesh& mesh, const GridFrame& frame);
+/// \param faces of the dense mesh, which decide whether several do
+void name_border_patches(const std::vector<InterfaceTriangle>& faces, const GridFrame& frame, TetMesh& mesh);
 
 /// Transforms a mesh of the field to input units, with its interfaces and its reference surface.
 /// \param cut lattice units

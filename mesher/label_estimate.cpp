@@ -24,14 +24,13 @@ double coarse_share(double cell, double adaptivity) {
 
 /// \param cell edge of a finest cell, input units
 MemoryModel memory_of(const LabelInput& labels, double cell, const FaceAreas& areas) {
-  using Thickness = LabelTuning::Thickness;
   constexpr double brick_voxels = LabelBricks::cells * LabelBricks::cells * LabelBricks::cells;
   const auto voxels = static_cast<double>(labels.voxel_count());
   const auto regions = static_cast<double>(labels.regions.bytes());
   double distances = EstimateTuning::Memory::per_label_face * areas.faces +
                      sizeof(LabelBricks::Brick) / brick_voxels * voxels;
   if (needs_depths(labels, cell)) distances += voxels;
-  const double thin = std::min<double>(Thickness::slab_bytes, Thickness::bytes_per_voxel * voxels);
+  const double thin = thin_search_bytes(labels);
   return {EstimateTuning::Memory::per_label_lattice_tet, regions + distances,
           regions + std::max(thin, distances)};
 }

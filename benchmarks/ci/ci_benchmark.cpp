@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <variant>
 
@@ -136,13 +137,15 @@ const LabelVolume& organs() {
 
 void choose_labels(benchmark::State& state) {
   repeatedly(state, [&] {
-    benchmark::DoNotOptimize(make_label_input(MemoryLabelSource(organs()), "organs", {}, nullptr));
+    benchmark::DoNotOptimize(
+        make_label_input(std::make_unique<MemoryLabelSource>(organs()), "organs", {}, nullptr));
   });
 }
 TETWRIGHT_CI(choose_labels, "prepare_labels");
 
 void mesh_organs(benchmark::State& state) {
-  const LabelInput labels = make_label_input(MemoryLabelSource(organs()), "organs", {}, nullptr);
+  const LabelInput labels =
+      make_label_input(std::make_unique<MemoryLabelSource>(organs()), "organs", {}, nullptr);
   MesherOptions options;
   options.voxel_size = default_cell_size(labels);
   run_mesher(state, [&] { return mesh_labels(labels, options, nullptr); });

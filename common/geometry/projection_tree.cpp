@@ -53,7 +53,7 @@ ProjectionTree::ProjectionTree(std::vector<Vec3> points, std::vector<Item> items
     }
     items_[to] = first;
   }
-  keys = {};
+  std::vector<Key>().swap(keys);
 
   tree_ = BoxTree(items_.size(), leaf_items, [&](std::size_t i) {
     Box3 box;

@@ -157,7 +157,7 @@ void RegionGrid::write_slices(int first, std::span<const RegionIndex> regions) {
   TETWRIGHT_CHECK(first % side == 0 && (last % side == 0 || last == size_[2]) && last <= size_[2]);
   const std::size_t begin = tile_number(0, 0, first / side),
                     end = tile_number(0, 0, (last + side - 1) / side);
-  std::vector<Packer> packers(thread_count());
+  std::vector<Packer> packers(std::min<std::size_t>(thread_count(), end - begin));
   parallel_chunks(end - begin, [&](std::size_t chunk, unsigned worker) {
     const auto number = static_cast<std::ptrdiff_t>(begin + chunk);
     const VoxelIndex at{static_cast<int>(number % counts_[0]),

@@ -17,6 +17,10 @@ constexpr Index many_voxels = std::numeric_limits<Index>::max();
 
 Index sum_of_voxels(Index a, Index b) { return a > many_voxels - b ? many_voxels : a + b; }
 
+/// A run, with its set and its number of voxels; if all of them are small islands, with what merging them
+/// needs.
+constexpr double bytes_per_run = 50;
+
 /// The runs of a volume: consecutive equal voxels along the first axis, in the order of their voxels.
 struct Runs {
   Runs(const RegionGrid& regions, const Progress* progress);
@@ -53,6 +57,9 @@ Runs::Runs(const RegionGrid& regions, const Progress* progress) {
     of_rows.clear();
     return;
   }
+  require_memory(bytes_per_run * static_cast<double>(count),
+                 "looking for islands in " + std::to_string(count) + " runs of voxels",
+                 "give --min-voxels 0 and fewer --labels, or crop the volume");
   Index first = 0;
   for (Index& n : of_rows) first += std::exchange(n, first);
   starts.resize(count + 1, 0);

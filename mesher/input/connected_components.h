@@ -36,7 +36,8 @@ struct IslandMerging {
 /// islands at the border of the volume continue beyond it and are never small. Axes of a single voxel have no
 /// border.
 ///
-/// Takes 18 bytes for each run of equal voxels along the first axis, and O(voxels) time. The result does not
+/// Takes 18 bytes for each run of equal voxels along the first axis, up to 50 where all islands are small,
+/// and O(voxels) time. The result does not
 /// depend on the number of threads.
 /// \param min_voxels counts as 2^32 - 1 if it is more
 /// \param progress may be null

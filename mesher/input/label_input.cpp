@@ -2,6 +2,7 @@
 #include "tetwright/mesher_input.h"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <tuple>
 
@@ -255,10 +256,11 @@ void Preparation::drop_lost(const std::vector<Loss>& losses) {
 
 }  // namespace
 
-LabelInput make_label_input(const LabelSource& source, const std::string& file, const LabelChoice& choice,
-                            Progress* progress) {
-  const LabelGrid& grid = source.grid();
-  LabelRegions read = read_regions(source, file, Chosen(choice), progress);
+LabelInput make_label_input(std::unique_ptr<const LabelSource> source, const std::string& file,
+                            const LabelChoice& choice, Progress* progress) {
+  const LabelGrid grid = source->grid();
+  LabelRegions read = read_regions(*source, file, Chosen(choice), progress);
+  source.reset();
   check_choice(read, file, choice);
 
   LabelInput result;

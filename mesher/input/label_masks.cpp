@@ -58,6 +58,9 @@ std::map<MaterialTag, std::size_t> count_labels_at(std::size_t voxels, const Lab
 }  // namespace
 
 void LabelMasks::begin(LabelVolume& volume, const std::string& file) {
+  // The masks together, and the next one.
+  require_memory(2 * static_cast<double>(volume.labels.size()) * sizeof(MaterialTag),
+                 "joining masks like " + file, "crop them or make them coarser");
   static_cast<LabelGrid&>(result_) = volume;
   result_.names.clear();
   result_.colours.clear();
@@ -163,13 +166,14 @@ Vec3 LabelMasks::centre(std::size_t voxel) const {
 void LabelMasks::report(Joined& joined) const {
   const double voxel = std::abs(result_.directions.determinant());
   const Overlap* most = nullptr;
+  std::size_t shared = 0;
   for (const Overlap& o : overlaps_) {
     if (!most || o.voxels > most->voxels) most = &o;
     const std::string first = name_of(o.first), second = name_of(o.second);
     joined.overlaps.push_back({first, second, voxel * static_cast<double>(o.voxels),
                                rule_ == OverlapRule::later   ? second
                                : rule_ == OverlapRule::first ? first
-                                                             : first + "+" + second,
+                                                             : shared_names_[shared++],
                                centre(o.first_voxel)});
   }
   const std::size_t in_several =
@@ -229,8 +233,6 @@ void LabelMasks::report(Joined& joined) const {
 LabelMasks::Joined LabelMasks::join(const std::string& files) && {
   if (std::all_of(materials_.begin(), materials_.end(), [](const Material& m) { return m.voxels == 0; }))
     throw NothingToMeshError(files + ": no mask has a voxel");
-  Joined joined;
-  report(joined);
   MaterialTag last = 0;
   for (const auto& [name, tag] : tags_) last = std::max(last, tag);
   std::set<std::string> used;
@@ -239,14 +241,18 @@ LabelMasks::Joined LabelMasks::join(const std::string& files) && {
     used.insert(m.mask.name);
   }
   std::vector<MaterialTag> shared_tags;
-  for (const std::string& sum : shared_names_) {
-    std::string name = sum;
+  for (std::string& name : shared_names_) {
+    const std::string sum = name;
     for (int k = 2; !used.insert(name).second; ++k) name = sum + "_" + std::to_string(k);
     const auto known = tags_.find(name);
     if (known == tags_.end() && last == std::numeric_limits<MaterialTag>::max())
       throw InputError(files, 0,
                        "no label above " + std::to_string(last) + " is left for the material '" + name +
                            "', where masks overlap; give the masks smaller labels");
+    if (known != tags_.end() && known->second <= 0)
+      throw InputError(files, 0,
+                       "the label " + std::to_string(known->second) + " of the material '" + name +
+                           "', where masks overlap, must be above 0");
     shared_tags.push_back(known != tags_.end() ? known->second : ++last);
     if (!result_.names.emplace(shared_tags.back(), name).second)
       throw InputError(files, 0,
@@ -258,6 +264,8 @@ LabelMasks::Joined LabelMasks::join(const std::string& files) && {
       if (MaterialTag& label = result_.labels[i]; label < 0)
         label = shared_tags[static_cast<std::size_t>(-label - 1)];
   });
+  Joined joined;
+  report(joined);
   joined.volume = std::move(result_);
   return joined;
 }
@@ -271,8 +279,8 @@ MaterialTag label_of_mask(const LabelVolume& volume, MaterialTag outside, const 
   if (second != volume.labels.end())
     throw InputError(file, 0,
                      "has the labels " + std::to_string(*first) + " and " + std::to_string(*second) +
-                         ", but each of several volumes is a mask, with one label besides " +
-                         std::to_string(outside) + "; give this one alone, or a mask for each label");
+                         ", but a mask has one besides " + std::to_string(outside) +
+                         "; give a volume of labels alone and without a name, or a mask for each label");
   return *first;
 }
 

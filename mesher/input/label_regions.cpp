@@ -107,15 +107,19 @@ LabelRegions read_regions(const LabelSource& source, const std::string& file,
   const LabelBoxes boxes(source, InputGrains::voxels);
   // A layer is one of boxes, and at least one of tiles.
   const int depth = ((RegionGrid::side - 1) / boxes.slices() + 1) * boxes.slices();
-  const auto max_slices = static_cast<std::size_t>(std::min(size[2], depth + RegionGrid::side - 1));
+  // Whole tiles leave nothing over.
+  const int left_over = depth % RegionGrid::side == 0 ? 0 : RegionGrid::side - 1;
+  const auto max_slices = static_cast<std::size_t>(std::min(size[2], depth + left_over));
+  const double source_bytes =
+      source.in_memory() ? static_cast<double>(source.grid().voxels()) * sizeof(MaterialTag) : 0;
   const double reading_bytes = static_cast<double>(max_slices * slice) * sizeof(RegionIndex) +
                                static_cast<double>(boxes.workers(std::min(size[2], depth))) *
                                    (static_cast<double>(source.decoding_bytes()) +
                                     static_cast<double>(boxes.voxels()) * sizeof(MaterialTag));
   LabelRegions result{RegionGrid(size), {}, {}};
   const auto require = [&] {
-    require_memory(static_cast<double>(result.regions.bytes()) + reading_bytes, "the labels of " + file,
-                   "crop the volume or make it coarser");
+    require_memory(static_cast<double>(result.regions.bytes()) + source_bytes + reading_bytes,
+                   "the labels of " + file, "crop the volume or make it coarser");
   };
   LabelNumbers all(chosen);
   std::vector<Numbering> threads(thread_count());

@@ -24,9 +24,12 @@ struct LabelRegions {
 
 /// Reads a volume by layers of whole blocks and numbers its labels. Beside the result and a layer, which
 /// takes two bytes for each voxel, each thread has the labels of a block in memory. The result does not
-/// depend on the number of threads. \param file file name for messages \param chosen tells which labels get a
-/// number; called concurrently \param progress may be null \throws InputError as LabelSource::read() does,
-/// for the first block with an error, or for more than 60,000
+/// depend on the number of threads.
+///
+/// \param file file name for messages
+/// \param chosen tells which labels get a number; called concurrently
+/// \param progress may be null
+/// \throws InputError as LabelSource::read() does, for the first block with an error, or for more than 60,000
 ///   chosen labels
 /// \throws OutputError if memory does not suffice
 /// \throws Interrupted

@@ -313,13 +313,34 @@ class ThinLabelFinder {
 
 }  // namespace
 
+namespace {
+
+std::size_t slice_bytes(const LabelInput& labels) {
+  return LabelTuning::Thickness::bytes_per_voxel * static_cast<std::size_t>(labels.size[0]) *
+         static_cast<std::size_t>(labels.size[1]);
+}
+
+/// Slices that are searched at a time; as many as the side of a box are read on both sides, too.
+int slab_depth(const LabelInput& labels, int side, std::size_t slab_bytes) {
+  const std::size_t slices =
+      std::min(slab_bytes / slice_bytes(labels), static_cast<std::size_t>(labels.size[2]));
+  return std::max(
+      {static_cast<int>(slices) - 2 * side, LabelTuning::Thickness::min_slab * side, RegionGrid::side});
+}
+
+}  // namespace
+
+double thin_search_bytes(const LabelInput& labels) {
+  // Most searches are for boxes of a few voxels.
+  constexpr int side = 2;
+  const int slices =
+      std::min(labels.size[2], slab_depth(labels, side, LabelTuning::Thickness::slab_bytes) + 2 * side);
+  return static_cast<double>(slices) * static_cast<double>(slice_bytes(labels));
+}
+
 std::vector<std::size_t> thin_voxels(const LabelInput& labels, const VoxelIndex& sides,
                                      std::size_t slab_bytes, const Progress* progress) {
-  const std::size_t slice_bytes = LabelTuning::Thickness::bytes_per_voxel *
-                                  static_cast<std::size_t>(labels.size[0]) *
-                                  static_cast<std::size_t>(labels.size[1]);
-  const int depth = std::max({static_cast<int>(slab_bytes / slice_bytes) - 2 * sides[2],
-                              LabelTuning::Thickness::min_slab * sides[2], RegionGrid::side});
+  const int depth = slab_depth(labels, sides[2], slab_bytes);
   std::vector<std::size_t> all;
   for (int first = 0; first < labels.size[2]; first += depth) {
     const int last = std::min(labels.size[2], first + depth);

@@ -19,6 +19,9 @@ struct ThinLabels {
   std::vector<ThinPart> too_thin;
 };
 
+/// Memory of a search for thin labels, bytes.
+double thin_search_bytes(const LabelInput& labels);
+
 /// Finds the voxels that are in no box of one region, nor beside a voxel of their region that is. The outside
 /// continues beyond the volume. Parallel.
 /// \param sides of the box, voxels

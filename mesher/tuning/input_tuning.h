@@ -158,7 +158,6 @@ struct InputTuning {
     static constexpr int max_steps = 2000;
   };
 
-  /// Max number of labels named in messages: enough to recognise a table of labels, few enough to read.
   /// Volumes with a mask each.
   struct Masks {
     /// Max distance of corresponding voxels of one grid, voxels: above the rounding of headers in single
@@ -166,6 +165,7 @@ struct InputTuning {
     static constexpr double same_grid = 1e-3;
   };
 
+  /// Max number of labels named in messages: enough to recognise a table of labels, few enough to read.
   struct Messages {
     static constexpr std::size_t max_listed_labels = 30;  ///< in one message
     static constexpr std::size_t max_named_labels = 20;   ///< with a finding of their own

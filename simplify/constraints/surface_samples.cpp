@@ -139,7 +139,7 @@ RepresentedSurface::RepresentedSurface(OriginalSurface original) {
       total_edge += (original.points[f.ids[(k + 1) % 3]] - original.points[f.ids[k]]).norm();
   }
   reach_ = mean_reach(total_edge, items.size());
-  original.faces = {};
+  std::vector<InterfaceFace>().swap(original.faces);
   triangles_ = ProjectionTree(std::move(original.points), std::move(items));
 }
 

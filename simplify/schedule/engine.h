@@ -88,7 +88,7 @@ class Engine {
   EditableMesh& mesh_ = constrained_.mesh;
   SurfaceGrid& grid_ = constrained_.grid;
   const std::size_t first_tets_;
-  std::optional<OriginalSurface> original_;  ///< until keep_surface()
+  std::optional<OriginalSurface> original_;  ///< until keep_surface(), which the tuned schedule calls
   SurfaceProjection projection_;
   InputSamples samples_;
   std::optional<EdgeSizes> sizes_;

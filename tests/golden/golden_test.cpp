@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <variant>
 
@@ -63,7 +64,8 @@ DenseMesh dense_labels() {
         const double distance = (Vec3(x, y, z) - Vec3::Constant(9.5)).norm();
         volume.labels.push_back(distance > 7 ? 0 : x + y < 20 ? 1 : 2);
       }
-  const LabelInput labels = make_label_input(MemoryLabelSource(std::move(volume)), "ball", {}, nullptr);
+  const LabelInput labels =
+      make_label_input(std::make_unique<MemoryLabelSource>(std::move(volume)), "ball", {}, nullptr);
   MesherOptions options;
   options.voxel_size = default_cell_size(labels);
   return mesh_labels(labels, options, nullptr);

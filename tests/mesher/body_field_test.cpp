@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <memory>
 #include <numbers>
 
 #include "mesher/labels/label_field.h"
@@ -36,7 +37,8 @@ LabelVolume two_part_ball(const Eigen::Matrix3d& directions) {
 void expect_same_again(const Eigen::Matrix3d& directions, double cells_per_voxel, double tolerance) {
   const TemporaryFolder folder;
   const LabelVolume volume = two_part_ball(directions);
-  const LabelInput labels = make_label_input(MemoryLabelSource(volume), "ball.nrrd", {}, nullptr);
+  const LabelInput labels =
+      make_label_input(std::make_unique<MemoryLabelSource>(volume), "ball.nrrd", {}, nullptr);
   const double cell = voxel_size(labels) / cells_per_voxel;
   const auto field = LabelField::make(labels, label_frame(labels, cell, false), false, nullptr);
   write_fields(*field, folder / "ball.vdb");

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <sstream>
 
 #include "tetwright/mesh_quality.h"
@@ -22,7 +23,8 @@ LabelInput make_labels(const std::array<int, 3>& size, const VoxelLabels& label,
       for (int x = 0; x < size[0]; ++x) volume.labels.push_back(label(x, y, z));
   LabelChoice choice;
   choice.min_voxels = 0;
-  return make_label_input(MemoryLabelSource(std::move(volume)), "made.nrrd", choice, nullptr);
+  return make_label_input(std::make_unique<MemoryLabelSource>(std::move(volume)), "made.nrrd", choice,
+                          nullptr);
 }
 
 RegionGrid grid_of(const std::array<int, 3>& size, const std::vector<RegionIndex>& regions) {

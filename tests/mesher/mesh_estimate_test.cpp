@@ -75,8 +75,9 @@ TEST(MeshEstimate, IsWithinAQuarterOnUniformCellsAndWithTheOutside) {
 }
 
 TEST(MeshEstimate, IsWithinAQuarterOnLabels) {
-  const LabelInput organs = make_label_input(MemoryLabelSource(std::get<LabelVolume>(make_sample("organs"))),
-                                             "organs", {}, nullptr);
+  const LabelInput organs =
+      make_label_input(std::make_unique<MemoryLabelSource>(std::get<LabelVolume>(make_sample("organs"))),
+                       "organs", {}, nullptr);
   const LabelInput ball = make_labels({40, 40, 40}, [](int x, int y, int z) {
     const int d = (x - 20) * (x - 20) + (y - 20) * (y - 20) + (z - 20) * (z - 20);
     return d < 100 ? 2 : d < 250 ? 1 : 0;

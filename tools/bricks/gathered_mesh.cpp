@@ -213,9 +213,13 @@ GatheredMesh gather(std::vector<BrickPart>& parts, std::map<MaterialTag, std::st
     return moved == t.ids.end() ? parts.size() : brick_of_point[*moved];
   });
   if (!all.meeting.empty()) return all;
+  std::vector<std::vector<std::uint8_t>>().swap(shared);
+  for (std::vector<std::uint8_t>* of_points : {&candidates, &shared_points})
+    std::vector<std::uint8_t>().swap(*of_points);
+  std::vector<std::uint32_t>().swap(brick_of_point);
   for (BrickPart& part : parts) {
     part.mesh = {};
-    part.flags = {};
+    std::vector<std::uint8_t>().swap(part.flags);
   }
   for (const auto& [tag, material] : all.dense.materials) all.original.volumes[tag] = material.volume;
   all.original.tets = all.dense.tets;

@@ -357,10 +357,10 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double de
   report.isolated_vertices = gathered.isolated_vertices;
   validate_materials_left(labels, materials_there(*made.field, gathered.dense));
   made.mesh = std::move(gathered.mesh);
-  name_border_patches(made.mesh, made.field->frame());
   bricks.coarse_tets = made.mesh.tets.size();
   run.report.dense = std::move(gathered.dense);
   run.original = std::move(gathered.original);
+  name_border_patches(run.original->surface.interfaces, made.field->frame(), made.mesh);
   made.reference = reference_of(run.original->surface, made.field);
   return made;
 }

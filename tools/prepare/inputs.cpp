@@ -65,12 +65,16 @@ ReadTetMesh take_tet_mesh(Input& input, const ReadTetMeshOptions& options, doubl
   return read_tet_mesh(input.name, options);
 }
 
-std::unique_ptr<LabelSource> take_label_source(Input& input, double& waited) {
-  if (auto* volume = std::get_if<LabelVolume>(&input.value))
-    return std::make_unique<MemoryLabelSource>(std::move(*volume));
+LabelVolume take_label_volume(Input& input, double& waited) {
+  if (auto* volume = std::get_if<LabelVolume>(&input.value)) return std::move(*volume);
   if (const auto* stream = std::get_if<InputStream>(&input.value))
-    return std::make_unique<MemoryLabelSource>(
-        read_label_volume_bytes(read_stream(*stream, waited), input.name, stream->extension));
+    return read_label_volume_bytes(read_stream(*stream, waited), input.name, stream->extension);
+  return read_label_volume(input.name);
+}
+
+std::unique_ptr<LabelSource> take_label_source(Input& input, double& waited) {
+  if (!std::holds_alternative<InputFile>(input.value))
+    return std::make_unique<MemoryLabelSource>(take_label_volume(input, waited));
   constexpr std::size_t cache_bytes = std::size_t{1} << 24;  // each chunk is needed once
   return open_label_source(input.name, {.cache_bytes = cache_bytes});
 }

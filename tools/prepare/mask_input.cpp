@@ -2,6 +2,7 @@
 #include "tools/prepare/mask_input.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -15,13 +16,14 @@
 #include "common/utf8.h"
 #include "tetwright/error.h"
 #include "tetwright/io.h"
-#include "tetwright/label_source.h"
 
 namespace tetwright {
 
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::array<const char*, 4> zarr_metadata{".zarray", ".zgroup", ".zattrs", "zarr.json"};
 
 bool is_layered(const Input& input) {
   return std::holds_alternative<InputFile>(input.value) && label_layers(input.name) > 1;
@@ -98,25 +100,30 @@ bool labels_differ(const std::vector<std::vector<NamedMask>>& layers) {
 struct FolderFiles {
   std::vector<std::string> volumes;  ///< but for .tif
   std::vector<std::string> others;   ///< surfaces, tet meshes and .vdb files
-  bool tiff = false;
 };
+
+/// \throws InputError if the folder cannot be read
 
 FolderFiles files_of(const std::string& folder) {
   FolderFiles files;
   std::error_code error;
   std::set<std::string> headers;  // without their extension
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+  fs::directory_iterator entries(folder, error);
+  for (; !error && entries != fs::directory_iterator(); entries.increment(error)) {
+    const fs::directory_entry& entry = *entries;
+    std::error_code unknown;
+    if (entry.is_directory(unknown)) continue;
     const std::string file = entry.path().string(), extension = lower_case(entry.path().extension().string());
     if (entry.path().filename().string().starts_with('.')) continue;
     if (extension == ".hdr") headers.insert(file_stem(file));
     const FileKind kind = file_kind(file);
-    if (extension == ".tif" || extension == ".tiff")
-      files.tiff = true;
-    else if (kind == FileKind::volume)
+    if (extension == ".tif" || extension == ".tiff") continue;
+    if (kind == FileKind::volume)
       files.volumes.push_back(file);
     else if (kind != FileKind::unknown || is_vdb(file))
       files.others.push_back(file);
   }
+  if (error) throw InputError(folder, 0, "cannot read this folder: " + error.message());
   // The two files of a pair are one volume.
   std::erase_if(files.volumes, [&](const std::string& file) {
     return lower_case(fs::path(file).extension().string()) == ".img" && headers.contains(file_stem(file));
@@ -124,6 +131,14 @@ FolderFiles files_of(const std::string& folder) {
   std::sort(files.volumes.begin(), files.volumes.end());
   std::sort(files.others.begin(), files.others.end());
   return files;
+}
+
+/// Whether a path is that of a zarr array, which is a folder of many files.
+bool is_zarr(const std::string& path) {
+  std::error_code error;
+  return lower_case(fs::path(path).extension().string()) == ".zarr" ||
+         std::any_of(zarr_metadata.begin(), zarr_metadata.end(),
+                     [&](const char* name) { return fs::exists(fs::path(path) / name, error); });
 }
 
 /// Name of the mask in a file: that of the file, without the second extension of 3D Slicer's segmentations.
@@ -140,14 +155,14 @@ std::vector<Input> with_masks_of_folders(std::vector<Input> inputs, PrepareRepor
   for (Input& input : inputs) {
     std::error_code error;
     if (!std::holds_alternative<InputFile>(input.value) || input.role != Input::Role::body ||
-        !fs::is_directory(input.name, error)) {
+        !fs::is_directory(input.name, error) || is_zarr(input.name)) {
       all.push_back(std::move(input));
       continue;
     }
     const FolderFiles files = files_of(input.name);
     if (input.kind() == FileKind::volume) {
-      // A zarr array, or slices.
-      if (files.tiff && !files.volumes.empty())
+      // Slices.
+      if (!files.volumes.empty())
         throw UsageError(input.name + " has slices (.tif) and other volumes, such as " +
                          fs::path(files.volumes.front()).filename().string() +
                          "; keep them in different folders, or give the files");
@@ -172,19 +187,24 @@ std::vector<Input> with_masks_of_folders(std::vector<Input> inputs, PrepareRepor
                fs::path(files.others.front()).filename().string(),
            .count = files.others.size(),
            .done = "not read"});
-    for (const std::string& file : files.volumes) all.push_back(Input(file).as(mask_name(file)));
+    for (const std::string& file : files.volumes) all.push_back(Input(file).as_mask());
   }
   return all;
 }
 
 bool are_masks(const std::vector<Input>& volumes) {
-  return volumes.size() > 1 || !volumes.front().material.empty() || is_layered(volumes.front());
+  return volumes.size() > 1 || volumes.front().mask || !volumes.front().material.empty() ||
+         is_layered(volumes.front());
 }
 
 LabelVolume join_masks(std::vector<Input>& volumes, LabelChoice& choice, PrepareRun& run) {
   std::map<std::string, MaterialTag> known;
   if (!choice.names_file.empty())
-    for (const auto& [tag, name] : choice.names) known.emplace(name, tag);
+    for (const auto& [tag, name] : choice.names)
+      if (!known.emplace(name, tag).second)
+        throw InputError(choice.names_file, choice.name_lines.contains(tag) ? choice.name_lines.at(tag) : 0,
+                         "labels " + std::to_string(known.at(name)) + " and " + std::to_string(tag) +
+                             " are both called '" + name + "'; a mask has one label");
   LabelMasks masks(run.options.bodies.overlap, known);
   MaskTags tags(choice.names_file, known);
   UniqueNames names(printable_name);
@@ -197,27 +217,35 @@ LabelVolume join_masks(std::vector<Input>& volumes, LabelChoice& choice, Prepare
     std::vector<std::vector<NamedMask>> of_layers;
     const bool layered = is_layered(input);
     if (layered) {
-      if (!input.material.empty() && input.material != mask_name(file))
+      if (!input.material.empty())
         throw UsageError(file +
                          " has several segments, each a material with its own name; leave out the name " +
                          input.material);
       layers = read_label_layers(file);
       for (const LabelVolume& layer : layers) of_layers.push_back(segments_of(layer, choice.outside_label));
     } else {
-      layers.push_back(read_all(*take_label_source(input, run.seconds_waited), file));
+      layers.push_back(take_label_volume(input, run.seconds_waited));
       const MaterialTag label = label_of_mask(layers.front(), choice.outside_label, file);
-      const auto named = layers.front().names.find(label);
-      const std::string own = input.is_value() ? input.name : mask_name(file);
       // A name that is given comes before that in the file, and that before the name of the file.
-      of_layers.push_back({{label, !input.material.empty() && input.material != own ? input.material
-                                   : named != layers.front().names.end()            ? named->second
-                                                                                    : own}});
+      std::string name = input.material;
+      const std::map<MaterialTag, std::string>& in_file = layers.front().names;
+      if (name.empty() && in_file.size() == 1)
+        name = in_file.begin()->second;  // also of an empty mask
+      else if (const auto named = in_file.find(label); name.empty() && named != in_file.end())
+        name = named->second;
+      if (name.empty()) name = input.is_value() ? input.name : mask_name(file);
+      of_layers.push_back({{label, name}});
     }
     const bool keep_labels = layered && volumes.size() == 1 && labels_differ(of_layers);
     for (std::size_t l = 0; l < layers.size(); ++l) {
       std::map<MaterialTag, LabelMask> added;
       for (const NamedMask& mask : of_layers[l]) {
         const std::string name = names.add(mask.name);
+        if (printable_name(mask.name) == "outside")
+          throw UsageError(
+              file +
+              ": a mask cannot be called 'outside', which is the name of what is in no mask; give it "
+              "another name with --material NAME=FILE");
         if (name != printable_name(mask.name))
           run.report.diagnostics.push_back(
               {.code = DiagnosticCode::names_qualified,

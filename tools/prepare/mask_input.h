@@ -9,7 +9,10 @@
 namespace tetwright {
 
 /// Replaces each folder that holds volumes, and is none itself, by its volumes in the order of their names,
-/// as masks. Adds a note of its other files to the report.
+/// as masks. Adds a note of surfaces, tet meshes and .vdb files in it to the
+/// report. Folders in it are not searched.
+/// \throws UsageError if there is no volume in it, or slices and other volumes
+/// \throws InputError if it cannot be read
 std::vector<Input> with_masks_of_folders(std::vector<Input> inputs, PrepareReport& report);
 
 /// Whether volumes are masks, whose voxels belong to one material each: several, a named one, or a file of

@@ -123,12 +123,12 @@ LabelInput read_labels(std::optional<LabelVolume> in_memory, std::vector<Input>&
   LabelChoice choice = label_choice(run.options.labels);
   const bool masks = !in_memory && are_masks(inputs);
   if (masks) in_memory = join_masks(inputs, choice, run);
-  const std::unique_ptr<const LabelSource> source =
-      in_memory ? std::make_unique<MemoryLabelSource>(std::move(*in_memory))
-                : take_label_source(inputs.front(), run.seconds_waited);
+  std::unique_ptr<const LabelSource> source = in_memory
+                                                  ? std::make_unique<MemoryLabelSource>(std::move(*in_memory))
+                                                  : take_label_source(inputs.front(), run.seconds_waited);
   if (!masks && run.options.labels.names_file.empty()) take_names(source->grid(), choice);
   run.report.material_colours = source->grid().colours;
-  LabelInput labels = make_label_input(*source, run.report.inputs.front(), choice, &run.progress);
+  LabelInput labels = make_label_input(std::move(source), run.report.inputs.front(), choice, &run.progress);
   run.report.diagnostics.insert(run.report.diagnostics.end(), labels.findings.begin(), labels.findings.end());
   run.report.volume.emplace(labels);
   return labels;

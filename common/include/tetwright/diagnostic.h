@@ -93,6 +93,7 @@ enum class DiagnosticCode : std::uint8_t {
   masks_overlap,
   masks_empty,
   space_converted,
+  space_unknown,
   // Tet meshes.
   tet_points_merged,
   tets_collapsed,

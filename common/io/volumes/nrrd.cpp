@@ -118,7 +118,7 @@ class NrrdHeader {
       });
       if (of_layers == chosen_.end())
         fields_.fail("sizes", "its segments are in " + std::to_string(layers_) +
-                                  " layers, but no axis of that size has the kind list");
+                                  " layers, but no axis of that size is other than spatial (of kind list)");
       axes_before_layers_ = static_cast<std::size_t>(of_layers - chosen_.begin());
       chosen_.erase(of_layers);
     }

@@ -29,12 +29,16 @@ class LabelMasks {
   explicit LabelMasks(OverlapRule rule, std::map<std::string, MaterialTag> tags = {})
       : rule_(rule), tags_(std::move(tags)) {}
 
-  /// Adds the masks of a volume; their labels are the keys of `masks`. Voxels of other labels, and of
-  /// `outside`, belong to none. All volumes have the grid of the first one, to a thousandth of a voxel. A
-  /// volume whose file names another coordinate system than that of the first one (LabelGrid::space) is
-  /// converted. Parallel; the result does not depend on the number of threads. \param volume has eight bytes
-  /// for each voxel together with the result \param file for messages \throws InputError if the grid is
-  /// another one, or masks overlap and the rule is OverlapRule::error
+  /// Adds the masks of a volume. Voxels of labels that are no key of `masks`, and of `outside`, belong to
+  /// none. All volumes have the grid of the first one, to a thousandth of a voxel. A volume whose file names
+  /// another anatomical coordinate system than that of the first one (LabelGrid::space) is converted. Takes
+  /// four bytes for each voxel beside the volume. Parallel; the result does not depend on the number of
+  /// threads.
+  ///
+  /// \param file for messages
+  /// \param masks by label
+  /// \throws InputError if the grid is another one, or masks overlap and the rule is OverlapRule::error
+  /// \throws OutputError if memory does not suffice
   void add(LabelVolume volume, const std::string& file, const std::map<MaterialTag, LabelMask>& masks,
            MaterialTag outside);
 
@@ -74,9 +78,8 @@ class LabelMasks {
   std::string first_file_;
   std::vector<Material> materials_;
   std::vector<Overlap> overlaps_;
-  /// Voxels in several masks. With OverlapRule::material their labels are -1, -2, ... for these names, until
-  /// all tags are known.
-  std::vector<bool> in_several_;
+  std::vector<bool> in_several_;  ///< by voxel: in several masks; empty: none is
+  /// Names of materials of OverlapRule::material. Their labels are -1, -2, ... until all tags are known.
   std::vector<std::string> shared_names_;
   /// Spaces of volumes, and how many had each: brought into that of the first one, or taken as they are.
   std::map<std::string, std::size_t> converted_, unknown_;

@@ -405,8 +405,8 @@ struct LabelInput {
 /// merge_small_islands(). If no island has that many voxels, nothing is merged and a finding says so. The
 /// result does not depend on the number of threads.
 ///
-/// The source is read once, by layers of whole blocks. The regions take about half a byte for each voxel, and
-/// islands 18 bytes for each run of equal voxels along the first axis.
+/// The source is read once, by layers of whole blocks, and freed before islands are merged. The regions take
+/// about half a byte for each voxel; for islands see merge_small_islands().
 ///
 /// \param file file name for messages
 /// \param progress may be null
@@ -418,8 +418,8 @@ struct LabelInput {
 /// \throws OutputError if memory does not suffice
 /// \throws NothingToMeshError if all voxels are outside
 /// \throws Interrupted
-LabelInput make_label_input(const LabelSource& source, const std::string& file, const LabelChoice& choice,
-                            Progress* progress);
+LabelInput make_label_input(std::unique_ptr<const LabelSource> source, const std::string& file,
+                            const LabelChoice& choice, Progress* progress);
 
 /// Splits a surface into one surface per group of triangles, in the order of their first triangles. The
 /// results have no groups. A surface without groups is returned unchanged, called `name`. A group without a

@@ -63,6 +63,7 @@ class RegionGrid {
   void write_slices(int first, std::span<const RegionIndex> regions);
 
   /// Replaces `count` voxels along the first axis.
+  /// \pre 0 < count, and all of them are in the volume
   void fill(const VoxelIndex& first, int count, RegionIndex region);
 
   /// Replaces each region r by `table[r]`. Parallel; O(tiles and their regions).
@@ -103,7 +104,8 @@ class RegionGrid {
   std::size_t row_number(int y, int z) const {
     return static_cast<std::size_t>(z % side * extent(1, y / side) + y % side);
   }
-  /// Adds a region to the palette of a tile, without those that no voxel has, and returns its number.
+  /// Adds a region to the palette of a tile, and returns its number. A full palette loses those that no voxel
+  /// has.
   unsigned add_region(Tile& tile, const VoxelIndex& extents, RegionIndex region) const;
 
   VoxelIndex size_{};

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 
 #include "common/random.h"
 #include "tests/common/io/expect_error.h"
@@ -25,7 +26,8 @@ LabelVolume volume_of(const std::vector<MaterialTag>& labels) {
 }
 
 LabelInput prepare(const std::vector<MaterialTag>& labels, const LabelChoice& choice) {
-  return make_label_input(MemoryLabelSource(volume_of(labels)), "scan.nrrd", choice, nullptr);
+  return make_label_input(std::make_unique<MemoryLabelSource>(volume_of(labels)), "scan.nrrd", choice,
+                          nullptr);
 }
 
 LabelChoice unmerged() {
@@ -54,7 +56,8 @@ using Texts = std::vector<std::string>;
 TEST(LabelInput, SpacingThatTheFileDoesNotGiveIsNoted) {
   LabelVolume volume = volume_of({0, 1, 2});
   volume.spacing_assumed = true;
-  EXPECT_EQ(findings_of(make_label_input(MemoryLabelSource(volume), "scan.nrrd", unmerged(), nullptr)),
+  EXPECT_EQ(findings_of(make_label_input(std::make_unique<MemoryLabelSource>(volume), "scan.nrrd", unmerged(),
+                                         nullptr)),
             (Texts{"1 volume whose file gives no spacing: each voxel has the size 1"}));
 }
 
@@ -257,7 +260,8 @@ TEST(LabelInput, MergedVoxelsAreThoseWhoseLabelChanged) {
     LabelInput first;
     for (unsigned threads : {1u, 4u}) {
       const ThreadLimit limit(threads);
-      const LabelInput p = make_label_input(MemoryLabelSource(volume), "scan.nrrd", choice, nullptr);
+      const LabelInput p =
+          make_label_input(std::make_unique<MemoryLabelSource>(volume), "scan.nrrd", choice, nullptr);
       std::size_t changed = 0;
       std::vector<std::size_t> counts(p.materials.size() + 1, 0);
       for (std::size_t i = 0; i < before.size(); ++i) {
@@ -302,7 +306,8 @@ TEST(LabelInput, VolumesAreReadInBlocksOfAnyShape) {
     if (random.below(30) == 0) label = static_cast<MaterialTag>(random.below(60)) - 20;
     volume.labels.push_back(label);
   }
-  const LabelInput whole = make_label_input(MemoryLabelSource(volume), "scan.nrrd", unmerged(), nullptr);
+  const LabelInput whole =
+      make_label_input(std::make_unique<MemoryLabelSource>(volume), "scan.nrrd", unmerged(), nullptr);
   for (std::size_t i = 0; i < volume.labels.size(); ++i) {
     const RegionIndex region = whole.regions[i];
     ASSERT_EQ(region == outside_region ? 0 : whole.materials[region - 1u].tag, volume.labels[i]);
@@ -311,19 +316,19 @@ TEST(LabelInput, VolumesAreReadInBlocksOfAnyShape) {
        {VoxelIndex{1, 1, 1}, {64, 64, 64}, {90, 80, 1}, {1000, 1000, 1000}, {7, 90, 45}})
     for (const unsigned threads : {1u, 4u}) {
       const ThreadLimit limit(threads);
-      const LabelInput p =
-          make_label_input(BlockedSource(volume, block, 150), "scan.nrrd", unmerged(), nullptr);
+      const LabelInput p = make_label_input(std::make_unique<BlockedSource>(volume, block, 150), "scan.nrrd",
+                                            unmerged(), nullptr);
       EXPECT_EQ(voxels_of(p.regions), voxels_of(whole.regions));
       ASSERT_EQ(p.materials.size(), whole.materials.size());
       for (std::size_t m = 0; m < p.materials.size(); ++m) {
         EXPECT_EQ(p.materials[m].tag, whole.materials[m].tag);
         EXPECT_EQ(p.materials[m].voxels, whole.materials[m].voxels);
       }
-      EXPECT_EQ(
-          error_of<InputError>([&] {
-            (void)make_label_input(BlockedSource(volume, {90, 80, 20}, 70), "scan.nrrd", unmerged(), nullptr);
-          }),
-          "slices before 80");
+      EXPECT_EQ(error_of<InputError>([&] {
+                  (void)make_label_input(std::make_unique<BlockedSource>(volume, VoxelIndex{90, 80, 20}, 70),
+                                         "scan.nrrd", unmerged(), nullptr);
+                }),
+                "slices before 80");
     }
 }
 
@@ -333,7 +338,8 @@ TEST(LabelInput, LayersThatDoNotFitInMemoryAreRefused) {
   volume.labels.resize(400000, 1);
   const MemoryLimit limit(1e6);
   EXPECT_NE(error_of<OutputError>([&] {
-              (void)make_label_input(MemoryLabelSource(volume), "scan.nrrd", unmerged(), nullptr);
+              (void)make_label_input(std::make_unique<MemoryLabelSource>(volume), "scan.nrrd", unmerged(),
+                                     nullptr);
             }).find("the labels of scan.nrrd would take"),
             std::string::npos);
 }
@@ -341,7 +347,8 @@ TEST(LabelInput, LayersThatDoNotFitInMemoryAreRefused) {
 TEST(LabelInput, CanBeInterrupted) {
   Progress progress;
   progress.cancel();
-  EXPECT_THROW(make_label_input(MemoryLabelSource(volume_of({0, 1})), "scan.nrrd", LabelChoice(), &progress),
+  EXPECT_THROW(make_label_input(std::make_unique<MemoryLabelSource>(volume_of({0, 1})), "scan.nrrd",
+                                LabelChoice(), &progress),
                Interrupted);
 }
 

@@ -68,7 +68,10 @@ TEST(LabelMasks, MaterialsOfOverlapsHaveNamesAndTagsOfTheirOwn) {
     masks.add(row({1, 1, 0}), "a.nii", {{1, {"a", 1}}}, 0);
     masks.add(row({0, 1, 0}), "b.nii", {{1, {"b", second}}}, 0);
     masks.add(row({0, 0, 1}), "c.nii", {{1, {"a+b", 3}}}, 0);
-    return std::move(masks).join("masks").volume;
+    const LabelMasks::Joined all = std::move(masks).join("masks");
+    EXPECT_EQ(all.overlaps.size(), 1u);
+    EXPECT_EQ(all.overlaps.front().owner, "a+b_2");
+    return all.volume;
   };
   const LabelVolume unnamed = joined({}, 2);
   EXPECT_EQ(unnamed.labels, (Labels{1, 4, 3}));
@@ -76,6 +79,10 @@ TEST(LabelMasks, MaterialsOfOverlapsHaveNamesAndTagsOfTheirOwn) {
   EXPECT_EQ(joined({{"liver", 9}}, 2).labels, (Labels{1, 10, 3}));
   EXPECT_EQ(joined({{"a+b_2", 7}}, 2).labels, (Labels{1, 7, 3}));
   EXPECT_NE(error_of<InputError>([&] { joined({{"a+b_2", 3}}, 2); }), "");
+  EXPECT_EQ(error_of<InputError>([&] {
+              joined({{"a+b_2", 0}}, 2);
+            }),
+            "masks: the label 0 of the material 'a+b_2', where masks overlap, must be above 0");
   EXPECT_EQ(
       error_of<InputError>([&] { joined({}, std::numeric_limits<MaterialTag>::max()); }),
       "masks: no label above 2147483647 is left for the material 'a+b_2', where masks overlap; give the "
@@ -159,8 +166,8 @@ TEST(LabelMasks, AMaskHasOneLabel) {
   EXPECT_EQ(error_of<InputError>([] {
               label_of_mask(row({0, 7, 3}), 0, "a.nii");
             }),
-            "a.nii: has the labels 7 and 3, but each of several volumes is a mask, with one label besides 0; "
-            "give this one alone, or a mask for each label");
+            "a.nii: has the labels 7 and 3, but a mask has one besides 0; give a volume of labels alone and "
+            "without a name, or a mask for each label");
 }
 
 }  // namespace

@@ -172,6 +172,23 @@ TEST_F(Bricks, GiveTheSameBytesByAnyMeans) {
   EXPECT_EQ(check.status, 0) << check.out;
 }
 
+TEST_F(Bricks, FacesOnTheBorderHaveTheNamesOfTheWhole) {
+  // The volume has no outside: labels reach all of its sides.
+  const auto names_with = [&](const std::string& bricks) {
+    const std::string file = path("names" + bricks + ".msh");
+    const Answer a = run("prepare " + path("long.nrrd") + " --target-tets 1000 --voxel-size 1 --bricks " +
+                         bricks + " -o " + file);
+    EXPECT_EQ(a.status, 0) << a.err;
+    std::set<std::string> names;
+    for (const auto& [patch, group] : read_tet_mesh(file).mesh.patch_groups) names.insert(group.name);
+    return names;
+  };
+  const std::set<std::string> names = names_with("32");
+  EXPECT_EQ(names.count("border_x_min"), 1u);          // one label
+  EXPECT_EQ(names.count("label_2:border_y_min"), 1u);  // among others
+  EXPECT_EQ(names, names_with("off"));
+}
+
 TEST_F(Bricks, AKilledRunGoesOn) {
   const std::string mesh = expected();
   for (std::size_t count = 1; count <= brick_count; ++count) {

@@ -316,7 +316,7 @@ TEST_F(Volumes, CallsThatDoNotFit) {
   expect_refused(organs + " --labels 5-1", 2, {"5-1"});
   expect_refused(organs + " --label-names " + path("none.txt"), 3, {"none.txt"});
   for (const std::string& masks : {organs + " " + organs, "--material b=" + organs})
-    expect_refused(masks, 3, {"has the labels", "is a mask"});
+    expect_refused(masks, 3, {"has the labels", "but a mask has one"});
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ TEST(Nrrd, LayersOfOverlappingSegments) {
   EXPECT_EQ(read_nrrd_layers(plain, "f").front().labels, counted_labels());
   const auto read = [](std::string_view b, const char* name) { return read_nrrd_layers(b, name); };
   expect_input_error(read, header("3 1 3 2", "list domain domain domain") + segments + "1", "line 5",
-                     "in 2 layers, but no axis of that size has the kind list");
+                     "in 2 layers, but no axis of that size is other than spatial (of kind list)");
   expect_input_error(read, header("2 1 3 2", "list domain domain domain") + segments + "1 2 3", "", "");
 }
 

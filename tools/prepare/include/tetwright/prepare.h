@@ -66,6 +66,12 @@ struct Input {
     material = std::move(material_name);
     return std::move(*this);
   }
+  /// Makes the input, a volume, a mask also if it is the only one. Its material has the name in the file, or
+  /// that of the file.
+  Input as_mask() && {
+    mask = true;
+    return std::move(*this);
+  }
   /// Makes the input an open surface inside the bodies of the other inputs, whose faces the mesh has under
   /// this name (SheetSurface).
   Input as_sheet(std::string sheet_name) && {
@@ -93,6 +99,7 @@ struct Input {
   std::string name;  ///< name of the input in messages; the path of a file
   Value value = InputFile{};
   std::string material;  ///< or the name of a sheet; empty: the name of the input
+  bool mask = false;     ///< a volume with one material, see LabelMasks; several volumes always are
   enum class Role : std::uint8_t { body, sheet, partition };
   Role role = Role::body;
 };
@@ -107,6 +114,7 @@ struct Input {
 TriangleMesh take_surface(Input& input, std::vector<Dropped>* dropped, double& waited);
 ReadTetMesh take_tet_mesh(Input& input, const ReadTetMeshOptions& options, double& waited);
 std::unique_ptr<LabelSource> take_label_source(Input& input, double& waited);
+LabelVolume take_label_volume(Input& input, double& waited);
 
 /// Whether the path has the extension .vdb, in upper or lower case.
 bool is_vdb(const std::string& path);
