@@ -103,7 +103,8 @@ void LabelBoxes::for_each(
     const std::function<void(const VoxelIndex&, const VoxelIndex&, unsigned)>& body) const {
   TETWRIGHT_CHECK(first % box_[2] == 0 && first < last && last <= size_[2]);
   const auto nx = static_cast<std::size_t>(boxes_[0]), ny = static_cast<std::size_t>(boxes_[1]);
-  const auto nz = static_cast<std::size_t>((last - first - 1) / box_[2] + 1);
+  const int layers = (last - first - 1) / box_[2] + 1;
+  const auto nz = static_cast<std::size_t>(layers);
   FirstError error;
   parallel_chunks(nx * ny * nz, [&](std::size_t item, unsigned worker) {
     if (error.before(item)) return;

@@ -54,7 +54,8 @@ std::array<std::string, 6> border_names(const Eigen::Matrix3d& axes) {
     left.col(axis).setConstant(-1);
     for (const int upper : {0, 1}) {
       const bool max = (upper == 1) == (axes(coordinate, axis) > 0);
-      names[static_cast<std::size_t>(2 * axis + upper)] =
+      const int face = 2 * axis + upper;
+      names[static_cast<std::size_t>(face)] =
           std::string("border_") + "xyz"[coordinate] + (max ? "_max" : "_min");
     }
   }

@@ -159,8 +159,8 @@ std::string LabelMasks::name_of(MaterialTag tag) const {
 
 Vec3 LabelMasks::centre(std::size_t voxel) const {
   const auto nx = static_cast<std::size_t>(result_.size[0]), ny = static_cast<std::size_t>(result_.size[1]);
-  return result_.to_input(Vec3(static_cast<double>(voxel % nx), static_cast<double>(voxel / nx % ny),
-                               static_cast<double>(voxel / nx / ny)));
+  const std::size_t x = voxel % nx, y = voxel / nx % ny, z = voxel / (nx * ny);
+  return result_.to_input(Vec3(static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)));
 }
 
 void LabelMasks::report(Joined& joined) const {

@@ -102,7 +102,8 @@ class RegionGrid {
   }
   /// Number of a row of voxels in its tile.
   std::size_t row_number(int y, int z) const {
-    return static_cast<std::size_t>(z % side * extent(1, y / side) + y % side);
+    const int row = z % side * extent(1, y / side) + y % side;
+    return static_cast<std::size_t>(row);
   }
   /// Adds a region to the palette of a tile, and returns its number. A full palette loses those that no voxel
   /// has.
