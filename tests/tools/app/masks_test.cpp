@@ -8,16 +8,27 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "common/samples/samples.h"
 #include "tests/tools/program.h"
 #include "tetwright/io.h"
 
 namespace tetwright::masks_test {
 namespace {
 
+/// A ball of three labels.
+LabelVolume ball() {
+  LabelVolume volume;
+  volume.size = {20, 18, 16};
+  volume.space = "left-posterior-superior";
+  for (int z = 0; z < 16; ++z)
+    for (int y = 0; y < 18; ++y)
+      for (int x = 0; x < 20; ++x)
+        volume.labels.push_back(Vec3(x - 9.5, y - 8.5, z - 7.5).norm() > 7 ? 0 : z < 6 ? 1 : x < 10 ? 2 : 3);
+  return volume;
+}
+
 class Masks : public testing::Test {
  protected:
-  Masks() : organs_(std::get<LabelVolume>(make_sample("organs"))) {
+  Masks() : organs_(ball()) {
     std::filesystem::create_directory(folder_ / "masks");
     write_label_volume(organs_, path("organs.nrrd"));
     std::string names;
@@ -39,8 +50,6 @@ class Masks : public testing::Test {
   template <class IsIn>
   void write_mask(const std::string& file, const IsIn& is_in) const {
     LabelVolume mask = organs_;
-    mask.names.clear();
-    mask.colours.clear();
     for (MaterialTag& label : mask.labels) label = is_in(label) ? 1 : 0;
     write_label_volume(mask, path(file));
   }
@@ -48,9 +57,7 @@ class Masks : public testing::Test {
     return run("prepare " + words + " --target-tets 1500 -o " + path("out.vtu") + " --stats " +
                path("s.json"));
   }
-  Answer mesh(const std::string& words) const {
-    return run("mesh " + words + " --voxel-size 2 -o " + path("out.vtu"));
-  }
+  Answer mesh(const std::string& words) const { return run("mesh " + words + " -o " + path("out.vtu")); }
   nlohmann::json stats() const { return nlohmann::json::parse(contents(path("s.json"))); }
 
   TemporaryFolder folder_;
