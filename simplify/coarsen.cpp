@@ -6,7 +6,7 @@
 #include "simplify/mesh/input_check.h"
 #include "simplify/schedule/engine.h"
 #include "simplify/schedule/tuned_schedule.h"
-#include "simplify/tuning/tuning.h"
+#include "simplify/tuning/coarsening_tuning.h"
 #include "tetwright/error.h"
 #include "tetwright/simplify.h"
 
@@ -14,7 +14,7 @@ namespace tetwright {
 
 namespace {
 
-using Coarsening = SimplifyTuning::Coarsening;
+using Coarsening = CoarseningTuning;
 
 /// Number of boundary and interface faces with only frozen points.
 std::size_t frozen_faces(const EditableMesh& mesh) {

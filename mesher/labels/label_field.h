@@ -20,7 +20,9 @@ GridFrame label_frame(const LabelInput& labels, double cell_size, bool uniform);
 double voxel_size(const LabelInput& labels);
 
 /// Whether cells are so much larger than voxels that the field has a distance_transform(), a byte for each
-/// voxel. \param cell_size input units
+/// voxel.
+///
+/// \param cell_size input units
 bool needs_depths(const LabelInput& labels, double cell_size);
 
 /// The field of a segmented volume; see LabelSmoother for how its distances are computed.

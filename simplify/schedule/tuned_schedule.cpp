@@ -13,6 +13,7 @@
 #include "simplify/operations/smoothing.h"
 #include "simplify/schedule/fitting_sweeps.h"
 #include "simplify/schedule/selection.h"
+#include "simplify/tuning/coarsening_tuning.h"
 #include "simplify/tuning/merging_tuning.h"
 #include "simplify/tuning/tuning.h"
 
@@ -21,7 +22,7 @@ namespace tetwright {
 namespace {
 
 using Closing = SimplifyTuning::Closing;
-using Coarsening = SimplifyTuning::Coarsening;
+using Coarsening = CoarseningTuning;
 using Merging = MergingTuning;
 using Schedules = SimplifyTuning::Schedules;
 using Tolerance = SimplifyTuning::Tolerance;

@@ -82,7 +82,9 @@ class LabelBoxes {
 
   /// Calls `body(low, high, worker)` for the boxes of the slices from `first` to before `last`, concurrently:
   /// a worker, numbered from 0, runs on one thread at a time. Rethrows the exception of the first box that
-  /// has one, for any number of threads. \pre `first` is a multiple of slices()
+  /// has one, for any number of threads.
+  ///
+  /// \pre `first` is a multiple of slices()
   void for_each(int first, int last,
                 const std::function<void(const VoxelIndex&, const VoxelIndex&, unsigned)>& body) const;
 
