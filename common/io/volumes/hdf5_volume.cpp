@@ -200,15 +200,20 @@ Hdf5Dataset open_dataset(const std::string& path, std::string inside) {
   const Hdf5Handle stored(H5Dget_type(dataset.id()), H5Tclose);
   const std::optional<Hdf5Type> type = number_type(stored.id());
   if (!type) throw InputError(name, 0, "its items are not whole numbers; store the labels as integers");
-  // Enumerations are read as they are, since the library converts them only to themselves.
-  Hdf5Handle memory(H5Tget_class(stored.id()) == H5T_ENUM ? H5Tget_native_type(stored.id(), H5T_DIR_DEFAULT)
-                                                          : H5Tcopy(type->memory),
+  // Enumerations are read as they are, since the library converts them only to themselves. Their native
+  // numbers have fewer bytes than the file's if those do not use all of their bits. The library writes beyond
+  // its own buffer when it looks for the native type of such an enumeration (HDF5 1.10), so it is not asked.
+  const bool enumeration = H5Tget_class(stored.id()) == H5T_ENUM;
+  if (enumeration) {
+    const Hdf5Handle base(H5Tget_super(stored.id()), H5Tclose);
+    const Hdf5Handle native(H5Tget_native_type(base.id(), H5T_DIR_DEFAULT), H5Tclose);
+    if (!native.good() || H5Tget_size(native.id()) != voxel_bytes(type->type))
+      throw InputError(name, 0,
+                       "its items are an enumeration of numbers that do not fill their bytes; store the "
+                       "labels as integers");
+  }
+  Hdf5Handle memory(enumeration ? H5Tget_native_type(stored.id(), H5T_DIR_DEFAULT) : H5Tcopy(type->memory),
                     H5Tclose);
-  // Native numbers may have fewer bytes than the file's, if those do not use all of their bits.
-  if (H5Tget_size(memory.id()) != voxel_bytes(type->type))
-    throw InputError(name, 0,
-                     "its items are an enumeration of numbers that do not fill their bytes; store the labels "
-                     "as integers");
   Hdf5Dataset out{std::move(file), std::move(dataset), name, {}, {}, {}, type->type, std::move(memory)};
   out.shape = shape_of(out.dataset.id());
   out.axes = spatial_axes(out.shape, axis_tags(out.dataset.id()), name);
