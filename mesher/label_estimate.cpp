@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesher/images/material_image.h"
 #include "mesher/labels/label_bricks.h"
 #include "mesher/labels/label_faces.h"
 #include "mesher/labels/label_field.h"
@@ -26,7 +27,8 @@ double coarse_share(double cell, double adaptivity) {
 MemoryModel memory_of(const LabelInput& labels, double cell, const FaceAreas& areas) {
   constexpr double brick_voxels = LabelBricks::cells * LabelBricks::cells * LabelBricks::cells;
   const auto voxels = static_cast<double>(labels.voxel_count());
-  const auto regions = static_cast<double>(labels.regions.bytes());
+  const double regions =
+      static_cast<double>(labels.regions.bytes()) + (labels.image ? labels.image->bytes() : 0);
   double distances = EstimateTuning::Memory::per_label_face * areas.faces +
                      sizeof(LabelBricks::Brick) / brick_voxels * voxels;
   if (needs_depths(labels, cell)) distances += voxels;

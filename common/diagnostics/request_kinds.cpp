@@ -99,10 +99,11 @@ constexpr std::array request_table = std::to_array<DiagnosticKind>({
      .severity = Severity::shortfall,
      .yields = Yields::to_acceptance,
      .title = "contacts differ from the input",
-     .message = "not the contacts of the input: N faces join what only meets in a curve, one at X Y Z",
+     .message = "not the contacts of the input: N faces join what only meets in a curve, one at X Y Z; 'NAME' "
+                "touches 'NAME' at X Y Z, where no voxels do",
      .cause =
          "Where four and more surfaces meet in a curve, cells are too large to keep apart what only touches "
-         "there.",
+         "there. Labels that no voxels bring together touch, or those that share voxel faces no longer do.",
      .remedy = "A higher `--resolution`."},
     {.code = creases_changed,
      .name = "creases-changed",
@@ -129,6 +130,16 @@ constexpr std::array request_table = std::to_array<DiagnosticKind>({
      .message = "lost N of N labels: TAG 'NAME' (N voxels at X Y Z)",
      .cause = "Each island of that label has fewer voxels than `--min-voxels`.",
      .remedy = "A smaller `--min-voxels`, or leave the label out with `--labels`."},
+    {.code = labels_changed,
+     .name = "labels-changed",
+     .severity = Severity::shortfall,
+     .yields = Yields::to_acceptance,
+     .title = "labels changed by merging",
+     .message = "merging islands changed labels: 'NAME' has N voxels instead of N; two parts of 'NAME' became "
+                "one at X Y Z",
+     .cause = "Small islands of a label were more than 2 % of its voxels, or their voxels joined two larger "
+              "parts.",
+     .remedy = "A smaller `--min-voxels`; 0 keeps all islands."},
     {.code = time_limit_reached,
      .name = "time-limit-reached",
      .severity = Severity::shortfall,

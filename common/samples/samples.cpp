@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/samples/samples.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -297,6 +298,36 @@ LabelVolume organs() {
   return volume;
 }
 
+/// Share of a voxel inside, for the distance of its centre from a blurred surface, voxels.
+double share_inside(double distance) { return std::clamp(0.5 - distance / 2, 0.0, 1.0); }
+
+LabelVolume bone() {
+  constexpr int width = 40, length = 60;
+  LabelVolume volume;
+  volume.size = {width, width, length};
+  const Vec3 spacing(2, 2, 2);
+  volume.directions = spacing.asDiagonal();
+  volume.origin = Vec3(1 - width, 1 - width, 0);
+  volume.space = "left-posterior-superior";
+  Random random(2);
+  for (int k = 0; k < length; ++k)
+    for (int j = 0; j < width; ++j)
+      for (int i = 0; i < width; ++i) {
+        const double x = i - 0.5 * (width - 1), y = j - 0.5 * (width - 1), z = k - 0.5 * (length - 1);
+        // The bone lies in front of the axis and has thicker ends.
+        const double across = std::sqrt(x * x + (y + 3) * (y + 3)), ends = z * z / 450;
+        const double flesh = share_inside(std::sqrt(x * x + y * y) - 17),
+                     shaft = share_inside(across - 6 - ends), marrow = share_inside(across - 3.5);
+        constexpr double air_value = -1000, flesh_value = 50, marrow_value = -60;
+        const double bone_value = 1300 + 8 * z;
+        const double value = air_value + flesh * (flesh_value - air_value) +
+                             shaft * (bone_value - flesh_value) + marrow * (marrow_value - bone_value);
+        volume.labels.push_back(static_cast<MaterialTag>(value) + static_cast<MaterialTag>(random.below(41)) -
+                                20);
+      }
+  return volume;
+}
+
 LabelVolume usual_foam() {
   return read_all(Foam(default_foam_voxels, default_foam_grains(default_foam_voxels)), foam_name);
 }
@@ -321,6 +352,7 @@ const std::vector<NamedSample>& samples() {
       {"random-interior-small", +[] { return random_interior(3, 170, 0.25); }},
       {"random-interior-large", +[] { return random_interior(14, 30000, 0.07); }},
       {"organs", organs},
+      {"bone", bone},
       {foam_name, usual_foam},
       {"heater_below",
        +[] {

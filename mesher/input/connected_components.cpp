@@ -85,13 +85,15 @@ class Islands {
         progress_(progress),
         sets_(runs_.count) {
     unite_neighbours();
-    count_voxels();
   }
+
+  /// Counts islands and their voxels: by faces, or after unite_touching().
+  void count_voxels();
 
   std::size_t islands() const { return islands_; }
   Index largest() const { return largest_; }
   /// \param regions receives the regions of merged islands
-  std::vector<MergedIsland> merge(Index min_voxels, RegionGrid& regions);
+  std::vector<MergedIsland> merge(Index min_voxels, RegionGrid& regions, std::vector<JoinedIslands>& joined);
   /// The number of islands of each region, without islands of the outside that reach the border.
   std::vector<std::size_t> parts(std::size_t regions, std::vector<std::uint64_t>* smallest = nullptr);
   /// Unites islands of one region that touch in an edge or a corner.
@@ -101,7 +103,6 @@ class Islands {
   void unite_neighbours();
   void unite_rows(std::size_t row, std::size_t other, bool touching);
   void unite_slices(std::size_t z);
-  void count_voxels();
   bool at_border(std::size_t row, Index run) const;
   void enlarge_outside(Index min_voxels);
   void list_small(Index min_voxels);
@@ -133,6 +134,24 @@ class Islands {
       for (Index run = runs_.of_rows[row]; run < runs_.of_rows[row + 1]; ++run) body(row, run);
   }
 
+  /// Calls `body(run)` for all runs with a voxel that touches one of a run, at least in a corner.
+  template <class Body>
+  void for_each_touching(Index run, Body&& body) const {
+    const std::size_t row = row_of(run), y = row % rows_, z = row / rows_;
+    const Index from = start(run) == 0 ? 0 : start(run) - 1, to = std::min(width_, end(run) + 1);
+    for (std::size_t k = z == 0 ? 0 : z - 1; k < std::min(slices_, z + 2); ++k)
+      for (std::size_t j = y == 0 ? 0 : y - 1; j < std::min(rows_, y + 2); ++j)
+        for (Index other = run_at(k * rows_ + j, from);
+             other < runs_.of_rows[k * rows_ + j + 1] && start(other) < to; ++other)
+          if (other != run) body(other);
+  }
+  /// The run of a row that has a voxel.
+  Index run_at(std::size_t row, Index x) const {
+    const auto first = runs_.starts.begin() + runs_.of_rows[row];
+    const auto last = runs_.starts.begin() + runs_.of_rows[row + 1];
+    return static_cast<Index>(std::upper_bound(first, last, x) - runs_.starts.begin() - 1);
+  }
+
   /// Calls `body(run, faces)` for all runs that share voxel faces with a run.
   template <class Body>
   void for_each_contact(Index run, Body&& body) const {
@@ -141,10 +160,7 @@ class Islands {
     if (from > 0) body(run - 1, Index{1});
     if (to < width_) body(run + 1, Index{1});
     const auto visit = [&](std::size_t other) {
-      const auto first = runs_.starts.begin() + runs_.of_rows[other];
-      const auto last = runs_.starts.begin() + runs_.of_rows[other + 1];
-      auto at = static_cast<Index>(std::upper_bound(first, last, from) - runs_.starts.begin() - 1);
-      for (; at < runs_.of_rows[other + 1] && start(at) < to; ++at)
+      for (Index at = run_at(other, from); at < runs_.of_rows[other + 1] && start(at) < to; ++at)
         body(at, std::min(end(at), to) - std::max(start(at), from));
     };
     if (y > 0) visit(row - 1);
@@ -208,6 +224,8 @@ void Islands::unite_neighbours() {
 
 void Islands::count_voxels() {
   voxels_.assign(count(), 0);
+  islands_ = 0;
+  largest_ = 0;
   for (Index run = 0; run < count(); ++run) {
     const Index root = sets_.root(run);
     islands_ += root == run;
@@ -286,7 +304,8 @@ void Islands::enlarge_outside(Index min_voxels) {
   });
 }
 
-std::vector<MergedIsland> Islands::merge(Index min_voxels, RegionGrid& regions) {
+std::vector<MergedIsland> Islands::merge(Index min_voxels, RegionGrid& regions,
+                                         std::vector<JoinedIslands>& joined) {
   enlarge_outside(min_voxels);
   list_small(min_voxels);
   std::vector<MergedIsland> merged;
@@ -306,7 +325,7 @@ std::vector<MergedIsland> Islands::merge(Index min_voxels, RegionGrid& regions) 
   std::vector<Index> changed;  // runs
   for (std::size_t step = 0; !queue.empty(); ++step) {
     if (step % 4096 == 0) throw_if_stopped();
-    const auto [count, island] = queue.top();
+    const Index count = queue.top().first, island = queue.top().second;
     queue.pop();
     // Skip an island that has grown since it was queued or was merged into another one.
     if (!sets_.is_root(island) || voxels_[island] != count) continue;
@@ -316,9 +335,16 @@ std::vector<MergedIsland> Islands::merge(Index min_voxels, RegionGrid& regions) 
     changed.insert(changed.end(), island_runs_.begin(), island_runs_.end());
     // The smallest island comes first, so it never joins a smaller one and its size at least doubles. A voxel
     // is therefore visited at most log2(min_voxels) times.
+    Index large = no_index;  // root of the first island it touches that is not small
     for (Index run : island_runs_)
-      for_each_contact(run, [&](Index other, Index) {
-        if (region_of(other) == region) join(run, other, min_voxels);
+      for_each_touching(run, [&](Index other) {
+        if (region_of(other) != region) return;
+        const Index root = sets_.root(other);
+        if (root != sets_.root(run) && voxels_[root] >= min_voxels) {
+          if (large != no_index) joined.push_back({region, first_voxel(island)});
+          large = root;
+        }
+        join(run, other, min_voxels);
       });
     const Index root = sets_.root(island);
     if (region == outside_region && std::any_of(island_runs_.begin(), island_runs_.end(),
@@ -380,6 +406,7 @@ std::vector<RegionParts> count_parts(const RegionGrid& regions, std::size_t coun
   Runs runs(regions, progress);
   if (runs.of_rows.empty()) return {};
   Islands islands(std::move(runs), regions.size(), progress);
+  islands.count_voxels();
   std::vector<std::uint64_t> smallest(count, no_voxel);
   const std::vector<std::size_t> by_faces = islands.parts(count, &smallest);
   islands.unite_touching();
@@ -396,10 +423,12 @@ IslandMerging merge_small_islands(RegionGrid& regions, std::size_t min_voxels, c
   result.runs = runs.count;
   if (runs.of_rows.empty()) return result;
   Islands islands(std::move(runs), regions.size(), progress);
+  islands.unite_touching();
+  islands.count_voxels();
   const auto min = static_cast<Index>(std::min<std::size_t>(min_voxels, many_voxels));
   result.islands = islands.islands();
   result.none_reaches = islands.largest() < min;
-  if (!result.none_reaches) result.merged = islands.merge(min, regions);
+  if (!result.none_reaches) result.merged = islands.merge(min, regions, result.joined);
   return result;
 }
 

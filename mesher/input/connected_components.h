@@ -17,6 +17,12 @@ struct MergedIsland {
   RegionIndex from = 0, to = 0;
 };
 
+/// Two islands of one region, neither of them small, that the merging of a third one joined.
+struct JoinedIslands {
+  RegionIndex region = 0;
+  std::uint64_t voxel = 0;  ///< lowest voxel of the third one
+};
+
 struct IslandMerging {
   /// Runs of equal voxels along the first axis. With more than 2^32 - 2 of them nothing was merged or
   /// counted.
@@ -25,12 +31,15 @@ struct IslandMerging {
   bool none_reaches = false;  ///< true if no island has `min_voxels` voxels, so nothing was merged
   /// By ascending voxel. Omits islands that ended up in their own region again.
   std::vector<MergedIsland> merged;
+  std::vector<JoinedIslands> joined;
 };
 
-/// Merges islands (face-connected voxels of one region) of fewer than `min_voxels` voxels into the region
-/// with which they share most voxel faces; ties go to the smallest region number. The smallest island is
-/// merged first; ties go to the lowest voxel. It is united with all islands of that region that it touches,
-/// and from then on the size of the union counts.
+/// Merges islands (voxels of one region that touch at least in a corner) of fewer than `min_voxels` voxels
+/// into the region with which they share most voxel faces; ties go to the smallest region number. The
+/// smallest island is merged first; ties go to the lowest voxel. It is united with all islands of that region
+/// that it touches, and from then on the size of the union counts. Voxels of diagonal layers of one voxel
+/// touch in edges and corners alone, so that with islands by faces such layers would fall apart and be
+/// merged.
 ///
 /// Voxel faces on the border of the volume do not count. The outside is treated like other regions, but its
 /// islands at the border of the volume continue beyond it and are never small. Axes of a single voxel have no

@@ -18,17 +18,6 @@ namespace tetwright {
 
 namespace {
 
-std::string text_of(const std::array<int, 3>& size) {
-  return std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]);
-}
-
-/// Size, origin and steps of a grid for messages.
-std::string grid_text(const LabelGrid& grid) {
-  const Eigen::Matrix3d& d = grid.directions;
-  return text_of(grid.size) + " voxels from " + place_text(grid.origin) + " in steps of " +
-         place_text(d.col(0)) + ", " + place_text(d.col(1)) + ", " + place_text(d.col(2));
-}
-
 /// A range of voxels with the same pair of masks.
 struct PairRun {
   MaterialTag first, second;
@@ -65,34 +54,12 @@ void LabelMasks::begin(LabelVolume& volume, const std::string& file) {
   result_.names.clear();
   result_.colours.clear();
   result_.labels.assign(volume.labels.size(), 0);
-  first_file_ = file;
-}
-
-void LabelMasks::check_grid(LabelGrid& grid, const std::string& file) {
-  const std::string before = grid.space;
-  if (change_space(grid, result_.space))
-    ++converted_[before];
-  else if (before != result_.space)
-    ++unknown_[before.empty() ? "unknown" : before];
-  bool same = grid.size == result_.size;
-  const double allowed = InputTuning::Masks::same_grid * result_.directions.colwise().norm().minCoeff();
-  for (int corner = 0; corner < 8 && same; ++corner) {
-    Vec3 index;
-    for (int a = 0; a < 3; ++a) index[a] = (corner >> a & 1) ? grid.size[a] - 1 : 0;
-    same = (grid.to_input(index) - result_.to_input(index)).norm() <= allowed;
-  }
-  if (!same)
-    throw InputError(file, 0,
-                     "its grid, " + grid_text(grid) + ", is not that of " + first_file_ + ", " +
-                         grid_text(result_) + "; resample one of them to the grid of the other");
 }
 
 void LabelMasks::add(LabelVolume volume, const std::string& file,
                      const std::map<MaterialTag, LabelMask>& masks, MaterialTag outside) {
-  if (result_.labels.empty())
-    begin(volume, file);
-  else
-    check_grid(volume, file);
+  grid_.add(volume, file);
+  if (result_.labels.empty()) begin(volume, file);
   std::vector<MaterialTag>& labels = result_.labels;
   const auto mask_at = [&](std::size_t i) -> MaterialTag {
     if (volume.labels[i] == outside) return 0;
@@ -181,7 +148,7 @@ void LabelMasks::report(Joined& joined) const {
   if (most)
     joined.findings.push_back(
         {.code = DiagnosticCode::masks_overlap,
-         .file = first_file_,
+         .file = grid_.first_file(),
          .what = (in_several == 1 ? "voxel" : "voxels") + std::string(" in several masks, in ") +
                  std::to_string(overlaps_.size()) + (overlaps_.size() == 1 ? " pair" : " pairs") +
                  ", most in '" + name_of(most->first) + "' and '" + name_of(most->second) + "' (" +
@@ -204,7 +171,7 @@ void LabelMasks::report(Joined& joined) const {
     }
     if (count > 0)
       joined.findings.push_back({.code = DiagnosticCode::masks_empty,
-                                 .file = first_file_,
+                                 .file = grid_.first_file(),
                                  .what = (count == 1 ? "mask " : "masks ") + std::string(what) + names,
                                  .count = count,
                                  .done = "not in the mesh"});
@@ -217,17 +184,8 @@ void LabelMasks::report(Joined& joined) const {
     list("without a voxel that does not belong to others: ",
          [&](const Material& m) { return m.voxels > 0 && left[m.mask.tag] == 0; });
   }
-  for (const auto& [spaces, done] :
-       {std::pair(&converted_, "brought into that of the first one, " + result_.space),
-        std::pair(&unknown_, "taken as they are, since it cannot be compared with that of the first one, " +
-                                 (result_.space.empty() ? std::string("unknown") : result_.space))})
-    for (const auto& [space, count] : *spaces)
-      joined.findings.push_back(
-          {.code = DiagnosticCode::space_converted,
-           .file = first_file_,
-           .what = (count == 1 ? "input" : "inputs") + std::string(" in another space, ") + space,
-           .count = count,
-           .done = done});
+  const std::vector<Diagnostic> spaces = grid_.findings();
+  joined.findings.insert(joined.findings.end(), spaces.begin(), spaces.end());
 }
 
 LabelMasks::Joined LabelMasks::join(const std::string& files) && {

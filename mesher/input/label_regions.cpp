@@ -138,9 +138,10 @@ LabelRegions read_regions(const LabelSource& source, const std::string& file,
                            row, slice);
     });
     if (all.too_many())
-      throw InputError(file, 0,
-                       "has more than " + std::to_string(InputTuning::Limits::max_materials) +
-                           " labels; choose fewer with --labels, if these are labels and not gray values");
+      throw InputError(
+          file, 0,
+          "has more than " + std::to_string(InputTuning::Limits::max_materials) +
+              " labels; mesh an image of gray values with --iso, or choose fewer labels with --labels");
     // Whole layers of tiles are packed; the rest waits for the next slices.
     const int end = last == size[2] ? last : last / RegionGrid::side * RegionGrid::side;
     const auto packed = static_cast<std::ptrdiff_t>(static_cast<std::size_t>(end - written) * slice);

@@ -67,8 +67,10 @@ void add_brick(const LabelSmoother& smoother, const std::array<int, 3>& in_tile,
   TileBricks::Made made{at, static_cast<std::uint32_t>(out.channels.size()), 0, outside_region};
   std::array<std::int16_t, LabelBricks::volume> values;
   bool all_far = true;
+  constexpr float units = LabelBricks::units_of_labels;
+  constexpr auto band_units = static_cast<std::int16_t>(LabelSmoother::band * units);
   for (std::size_t l = 0; l < smoother.labels().size(); ++l) {
-    std::int16_t smallest = LabelBricks::band_units, largest = -LabelBricks::band_units;
+    std::int16_t smallest = band_units, largest = -band_units;
     int i = 0;
     for (int z = 0; z < LabelBricks::nodes; ++z)
       for (int y = 0; y < LabelBricks::nodes; ++y)
@@ -76,13 +78,13 @@ void add_brick(const LabelSmoother& smoother, const std::array<int, 3>& in_tile,
           const float d =
               smoother.distance(l, in_tile[0] * LabelBricks::cells + x, in_tile[1] * LabelBricks::cells + y,
                                 in_tile[2] * LabelBricks::cells + z);
-          values[i] = static_cast<std::int16_t>(std::lrint(LabelBricks::units_per_voxel * d));
+          values[i] = static_cast<std::int16_t>(std::lrint(units * d));
           smallest = std::min(smallest, values[i]);
           largest = std::max(largest, values[i]);
         }
-    if (smallest >= LabelBricks::band_units) continue;
-    if (largest <= -LabelBricks::band_units) made.alone = smoother.labels()[l];
-    all_far &= largest <= -LabelBricks::band_units;
+    if (smallest >= band_units) continue;
+    if (largest <= -band_units) made.alone = smoother.labels()[l];
+    all_far &= largest <= -band_units;
     out.channels.push_back(smoother.labels()[l]);
     out.values.insert(out.values.end(), values.begin(), values.end());
     ++made.count;
@@ -115,7 +117,7 @@ void make_tile(const LabelInput& labels, int t, const std::array<int, 3>& tiles,
           labels.file, 0,
           "has more than " + std::to_string(LabelTuning::Smoothing::max_labels) + " labels within " +
               std::to_string(LabelSmoother::side) +
-              " voxels, like an image of gray values; give a segmented volume, or choose --labels");
+              " voxels, like an image of gray values; mesh an image with --iso, or choose --labels");
     smoother.smooth(growth);
     for (int k = 0; k < static_cast<int>(out.shares.size()); ++k) {
       const std::vector<double> shares =

@@ -6,8 +6,10 @@
 
 #include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
+#include "mesher/labels/image_bricks.h"
 #include "mesher/labels/distance_transform.h"
 #include "mesher/labels/label_bricks.h"
+#include "mesher/tuning/image_tuning.h"
 #include "mesher/tuning/label_tuning.h"
 
 namespace tetwright {
@@ -17,8 +19,6 @@ namespace {
 constexpr int padding = LabelBricks::padding;
 constexpr int brick_cells = LabelBricks::cells, brick_nodes = LabelBricks::nodes;
 constexpr int brick_volume = LabelBricks::volume;
-constexpr float units_per_voxel = LabelBricks::units_per_voxel;
-constexpr std::int16_t band_units = LabelBricks::band_units;
 
 /// For each node of a brick, finds the channel of the smallest distance; ties go to the first.
 void find_own_channels(const LabelBricks& all, const LabelBricks::Brick& brick,
@@ -72,6 +72,7 @@ GridFrame label_frame(const LabelInput& labels, double cell_size, bool uniform) 
 /// Data shared by the fields of all refinements.
 struct LabelField::Shared {
   LabelBricks bricks;
+  bool of_image;
   double voxel;      ///< smallest spacing, input units
   double min_slope;  ///< smallest spacing by largest
   /// Voxels per cell of the frame, along each axis; negative along a reversed axis.
@@ -85,9 +86,11 @@ struct LabelField::Shared {
 std::shared_ptr<const LabelField> LabelField::make(const LabelInput& labels, const GridFrame& frame,
                                                    bool keep_outside, Progress* progress) {
   auto made = std::make_shared<Shared>();
-  made->bricks = make_label_bricks(labels, progress);
+  made->of_image = labels.image != nullptr;
+  made->bricks = labels.image ? make_image_bricks(labels, progress) : make_label_bricks(labels, progress);
   made->voxel = voxel_size(labels);
   made->min_slope = made->voxel / labels.directions.colwise().norm().maxCoeff();
+  if (labels.image) made->min_slope *= ImageTuning::min_slope;
   for (int a = 0; a < 3; ++a) made->voxels_per_cell[a] = static_cast<double>(labels.size[a]) / frame.box[a];
   made->first_node = Vec3::Constant(padding - 0.5);
   if (is_mirrored(labels)) {
@@ -128,7 +131,9 @@ class LabelField::Sampler final : public FieldSampler {
         field_(f),
         shared_(*f.shared_),
         bricks_(f.shared_->bricks),
-        per_unit_(f.shared_->voxel / f.frame().cell_size / units_per_voxel),
+        units_per_voxel_(bricks_.units_per_voxel),
+        band_units_(bricks_.band_units()),
+        per_unit_(f.shared_->voxel / f.frame().cell_size / units_per_voxel_),
         cells_per_voxel_(std::ldexp(1, f.refinement())) {}
 
   NearestRegion nearest(const Vec3& point) override {
@@ -222,7 +227,7 @@ class LabelField::Sampler final : public FieldSampler {
     return std::nullopt;
   }
   double far_value(const Place& p, RegionIndex region) const {
-    return p.brick->count == 0 && p.brick->alone == region ? -band_units : band_units;
+    return p.brick->count == 0 && p.brick->alone == region ? -band_units_ : band_units_;
   }
   double value(const Place& p, RegionIndex region) const {
     const auto channel = channel_of(p, region);
@@ -240,11 +245,11 @@ class LabelField::Sampler final : public FieldSampler {
   std::optional<Far> far_from_interfaces(const Place& p, const Vec3& point) const {
     if (shared_.depths.steps.empty()) return std::nullopt;
     const NearestRegion first = nearest(p).first;
-    const double cut_off = per_unit_ * band_units;
+    const double cut_off = per_unit_ * band_units_;
     if (first.margin < LabelTuning::Field::clamped_share * cut_off) return std::nullopt;
     const Vec3 index = field_.to_nodes(point) - Vec3::Constant(padding);
     Vec3 by_voxels;
-    const double per_voxel = per_unit_ * units_per_voxel;
+    const double per_voxel = per_unit_ * units_per_voxel_;
     const double depth = per_voxel * shared_.depths.at(index, by_voxels);
     if (depth <= cut_off) return std::nullopt;
     return Far{first.region, depth, per_voxel * by_voxels.cwiseProduct(field_.nodes_per_unit_)};
@@ -291,11 +296,15 @@ class LabelField::Sampler final : public FieldSampler {
   const LabelField& field_;
   const Shared& shared_;
   const LabelBricks& bricks_;
+  const float units_per_voxel_;
+  const std::int16_t band_units_;
   const double per_unit_;         ///< lattice units
   const double cells_per_voxel_;  ///< lattice units per voxel of the frame
 };
 
 bool LabelField::is_certain(const Vec3& point) const {
+  // The interfaces of an image may pass through voxel centres.
+  if (shared_->of_image) return false;
   if (LabelTuning::Field::min_cells_per_voxel * voxels().cell_size >
       (1 + tolerance::coinciding_cells) * shared_->voxel)
     return false;
@@ -316,7 +325,8 @@ class LabelField::InterfaceFinder {
         smaller_(field.voxels().cell_size < (1 - tolerance::coinciding_cells) * field.shared_->voxel),
         on_voxels_(field.refined(0)),
         sampler_(on_voxels_->sampler()),
-        max_slope_(std::sqrt(3.0) * 2 * LabelSmoother::band * field.shared_->voxels_per_cell.norm()),
+        max_slope_(std::sqrt(3.0) * 2 * field.shared_->bricks.max_distance() *
+                   field.shared_->voxels_per_cell.norm()),
         band_(LabelSmoother::band) {}
 
   /// \param low, high bounding box of the cube, cells

@@ -25,7 +25,8 @@ double voxel_size(const LabelInput& labels);
 /// \param cell_size input units
 bool needs_depths(const LabelInput& labels, double cell_size);
 
-/// The field of a segmented volume; see LabelSmoother for how its distances are computed.
+/// The field of a segmented volume or of an image; see LabelSmoother and make_image_bricks() for how its
+/// distances are computed.
 ///
 /// Distances are measured in index space, with each axis in its own spacing, and multiplied by the smallest
 /// spacing; they are clamped to about two voxels. They are stored in bricks of 8 x 8 x 8 cells between voxel
@@ -50,7 +51,7 @@ class LabelField final : public MaterialField, private VoxelVolume {
   class InterfaceFinder;
   struct Shared;
 
-  /// True at voxel centres, provided that cells are at most half a voxel.
+  /// True at voxel centres of a segmented volume, provided that cells are at most half a voxel.
   bool is_certain(const Vec3& point) const override;
   static double band_in_cells(const Shared& shared, const GridFrame& voxels);
   LabelField(std::shared_ptr<const Shared> shared, const GridFrame& voxels, std::vector<FieldRegion> regions,

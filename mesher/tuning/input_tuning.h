@@ -13,6 +13,7 @@ struct InputGrains {
   static constexpr std::size_t components = 16;    ///< each is compared with others
   static constexpr std::size_t border_edges = 16;  ///< each is compared with all others
   static constexpr std::size_t voxels = 1 << 18;
+  static constexpr std::size_t slices = 16;  ///< each is read once, and the first one after them again
 };
 
 /// Surfaces and volumes before there is a grid; mesher/README.md, Tuned numbers, explains the terms.
@@ -20,6 +21,13 @@ struct InputTuning {
   struct Limits {
     /// Max materials and labels: regions have numbers of 16 bits, a few of them reserved.
     static constexpr std::size_t max_materials = 60'000;
+  };
+
+  /// Volumes that are probably no segmentation: with more labels than a table of labels has, in islands of
+  /// fewer voxels on average.
+  struct GrayValues {
+    static constexpr std::size_t min_labels = 256;
+    static constexpr double max_island = 3;
   };
 
   struct ExpectedSolids {

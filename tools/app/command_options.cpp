@@ -15,6 +15,7 @@
 #include "tetwright/io.h"
 #include "tools/app/body_options.h"
 #include "tools/app/command_line.h"
+#include "tools/app/image_options.h"
 #include "tools/app/label_ranges.h"
 #include "tools/app/option_values.h"
 
@@ -329,6 +330,7 @@ void add_prepare(CLI::App& app, CommandLine& c) {
   add_simplifying(app, c);
   add_meshing(app, c, "what the target needs");
   add_labels(app, c);
+  add_images(app, c);
   add_bricks(app, c);
   add_stats(app, c);
   add_common(app, c);
@@ -343,6 +345,7 @@ void add_mesh(CLI::App& app, CommandLine& c) {
   add_meshing(app, c, "128, or with --tolerance what that needs; for segmented volumes one cell per voxel");
   add_tolerance(app, c);
   add_labels(app, c);
+  add_images(app, c);
   add_stats(app, c);
   add_common(app, c);
   add_time_limit(app, c);

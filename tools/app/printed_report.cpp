@@ -24,7 +24,8 @@ namespace {
   return buffer;
 }
 
-/// Line such as "volume 40 x 30 x 20 voxels of 1 x 1 x 2.5, space unknown; 2 labels: 1 'bone', 2 'skin'".
+/// Line such as "volume 40 x 30 x 20 voxels of 1 x 1 x 2.5, space unknown; 2 labels: 1 'bone', 2 'skin'",
+/// and the thresholds of an image.
 std::string volume_line(const VolumeReport& v) {
   constexpr std::size_t max_labels = 8;
   const Vec3 spacing = v.spacing();
@@ -35,6 +36,9 @@ std::string volume_line(const VolumeReport& v) {
   for (std::size_t i = 0; i < std::min(max_labels, v.labels.size()); ++i)
     line += (i ? ", " : "") + std::to_string(v.labels[i].tag) + " '" + v.labels[i].name + "'";
   if (v.labels.size() > max_labels) line += ", ...";
+  for (const UsedIso& iso : v.isos)
+    line += "; '" + iso.name + "' from " + text("%.9g", iso.value) + " on" +
+            (iso.automatic ? " (Otsu's threshold)" : "");
   return printable(line);
 }
 

@@ -17,6 +17,7 @@
 #include "common/message_text.h"
 #include "mesher/brick_mesher.h"
 #include "mesher/field_mesher.h"
+#include "mesher/images/material_image.h"
 #include "mesher/labels/label_faces.h"
 #include "mesher/volume_field.h"
 #include "tetwright/error.h"
@@ -58,6 +59,19 @@ std::vector<std::uint8_t> materials_there(const MaterialField& field, const Mesh
   return there;
 }
 
+/// Checksum of the values and options of an image.
+std::string checksum(const MaterialImage& image) {
+  uLong sum = crc32_z(0, nullptr, 0);
+  const auto add = [&](const auto& values) {
+    sum = crc32_z(sum, reinterpret_cast<const Bytef*>(values.data()), values.size() * sizeof(values[0]));
+  };
+  for (const std::vector<float>& channel : image.channels()) add(channel);
+  add(image.thresholds());
+  add(image.offsets());
+  if (image.outside()) add(std::array{*image.outside()});
+  return std::to_string(sum);
+}
+
 /// Checksum of the regions of all voxels.
 std::string checksum(const RegionGrid& regions) {
   std::vector<RegionIndex> slice(static_cast<std::size_t>(regions.size()[0]) *
@@ -95,6 +109,7 @@ BrickJob describe(const LabelInput& labels, const MesherOptions& options, int si
            numbers({d(0, 0), d(1, 0), d(2, 0), d(0, 1), d(1, 1), d(2, 1), d(0, 2), d(1, 2), d(2, 2)})},
           {"labels", tags},
           {"checksum of the voxels", checksum(labels.regions)},
+          {"checksum of the image", labels.image ? checksum(*labels.image) : "none"},
           {bricks_option, std::to_string(side)},
           {"--target-tets", std::to_string(*asked.target.tets)},
           {"cell size", numbers({cell_size(labels, options)})},

@@ -10,6 +10,7 @@
 #include "common/geometry/projection_tree.h"
 #include "common/message_text.h"
 #include "tetwright/sheets.h"
+#include "tools/prepare/label_changes.h"
 
 namespace tetwright {
 
@@ -401,6 +402,8 @@ void find_moved_boundary(const TetMesh& mesh, const TriangleMesh& surface, Prepa
 
 void find_input_changes(const TetMesh& mesh, PrepareRun& run) {
   find_lost_labels(run);
+  find_changed_labels(run);
+  find_changed_contacts(mesh, run);
   find_changed_solids(mesh, run);
   find_uncertain_changes(run.report);
   find_changed_sheets(mesh, run);

@@ -28,7 +28,8 @@ bool is_vdb(const std::string& path) {
 FileKind Input::kind() const {
   if (std::holds_alternative<InputSurface>(value)) return FileKind::surface;
   if (std::holds_alternative<InputMesh>(value)) return FileKind::tet_mesh;
-  if (std::holds_alternative<LabelVolume>(value)) return FileKind::volume;
+  if (std::holds_alternative<LabelVolume>(value) || std::holds_alternative<ImageVolume>(value))
+    return FileKind::volume;
   return file_kind(typed_name());
 }
 
@@ -70,6 +71,19 @@ LabelVolume take_label_volume(Input& input, double& waited) {
   if (const auto* stream = std::get_if<InputStream>(&input.value))
     return read_label_volume_bytes(read_stream(*stream, waited), input.name, stream->extension);
   return read_label_volume(input.name);
+}
+
+ImageVolume take_image(Input& input, double& waited) {
+  if (auto* image = std::get_if<ImageVolume>(&input.value)) return std::move(*image);
+  if (auto* volume = std::get_if<LabelVolume>(&input.value)) {
+    ImageVolume image;
+    static_cast<LabelGrid&>(image) = *volume;
+    image.channels.emplace_back(volume->labels.begin(), volume->labels.end());
+    return image;
+  }
+  if (const auto* stream = std::get_if<InputStream>(&input.value))
+    return read_image_bytes(read_stream(*stream, waited), input.name, stream->extension);
+  return read_image(input.name);
 }
 
 std::unique_ptr<LabelSource> take_label_source(Input& input, double& waited) {

@@ -13,6 +13,7 @@
 #include "tetwright/error.h"
 #include "tetwright/io.h"
 #include "tetwright/mesher_input.h"
+#include "tools/prepare/image_input.h"
 #include "tools/prepare/mask_input.h"
 
 namespace tetwright {
@@ -59,6 +60,8 @@ bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
       throw UsageError(
           "--labels, --label-names, --outside-label and --min-voxels are for segmented volumes, and no "
           "input is one");
+    if (options.images.any())
+      throw UsageError("--iso, --outside-probability and --smooth are for images, and no input is a volume");
     return false;
   }
   if (std::any_of(inputs.begin(), inputs.end(),
@@ -86,6 +89,9 @@ bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
     throw UsageError("--nested is for surfaces, and the input is a segmented volume");
   if (bodies.contact_tolerance)
     throw UsageError("--contact-tolerance is for surfaces, and the input is a segmented volume");
+  if (vdb_labels && options.images.any())
+    throw UsageError("--iso, --outside-probability and --smooth are for images, and " + inputs.front().name +
+                     " holds labels");
   if (bodies.overlap != OverlapRule::later && (vdb_labels || !are_masks(inputs)))
     throw UsageError("--on-overlap is for surfaces and masks, and the input is one segmented volume");
   if (bodies.regions.rule != RegionRule::cells || !bodies.regions.seeds.empty())
@@ -132,6 +138,18 @@ LabelInput read_labels(std::optional<LabelVolume> in_memory, std::vector<Input>&
   run.report.diagnostics.insert(run.report.diagnostics.end(), labels.findings.begin(), labels.findings.end());
   run.report.volume.emplace(labels);
   return labels;
+}
+
+LabelInput read_volume(std::optional<LabelVolume> vdb_labels, std::vector<Input>& inputs, PrepareRun& run) {
+  if (vdb_labels) return read_labels(std::move(vdb_labels), inputs, run);
+  if (are_images(inputs, run)) return read_images(inputs, run);
+  try {
+    return read_labels({}, inputs, run);
+  } catch (const InputError&) {
+    // Readers of labels refuse channels.
+    if (!has_channels(inputs)) throw;
+    return read_images(inputs, run);
+  }
 }
 
 /// Reads the level set of an input that names its material; there must be only one.
@@ -274,7 +292,7 @@ ScanInput read_scan(std::vector<Input> inputs, PrepareRun& run) {
   check_input_kinds(inputs, run.task);
   std::optional<LabelVolume> vdb_labels;
   ScanInput input = is_volume(inputs, run.options, vdb_labels)
-                        ? ScanInput(read_labels(std::move(vdb_labels), inputs, run))
+                        ? ScanInput(read_volume(std::move(vdb_labels), inputs, run))
                         : ScanInput(read_surfaces(inputs, run));
   run.report.seconds_read = watch.seconds();
   run.report.loops_read = watch.loops();

@@ -35,6 +35,7 @@ const char* request_name(DiagnosticCode code) {
     case DiagnosticCode::patches_lost:
       return "patches";
     case DiagnosticCode::labels_lost:
+    case DiagnosticCode::labels_changed:
       return "labels";
     case DiagnosticCode::time_limit_reached:
       return "time_limit";

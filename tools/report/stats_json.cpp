@@ -57,20 +57,23 @@ nlohmann::json volume_json(const VolumeReport& v,
                       {"name", l.name},
                       {"voxels", l.voxels},
                       {"voxels_in_file", l.voxels_in_file},
-                      {"volume", voxel * static_cast<double>(l.voxels)}});
+                      {"volume", voxel * l.image_volume.value_or(static_cast<double>(l.voxels))}});
     if (const auto colour = colours.find(l.tag); colour != colours.end())
       labels.back()["color"] = colour->second;
   }
   for (const LostLabel& l : v.lost) lost.push_back({{"tag", l.tag}, {"name", l.name}, {"voxels", l.voxels}});
-  return {{"size", v.size},
-          {"spacing", place_json(v.spacing())},
-          {"directions", directions},
-          {"origin", place_json(v.origin)},
-          {"space", v.space.empty() ? "unknown" : v.space},
-          {"labels", labels},
-          {"lost", lost},
-          {"merged_islands", v.merged_islands},
-          {"merged_voxels", v.merged_voxels}};
+  nlohmann::json json = {{"size", v.size},
+                         {"spacing", place_json(v.spacing())},
+                         {"directions", directions},
+                         {"origin", place_json(v.origin)},
+                         {"space", v.space.empty() ? "unknown" : v.space},
+                         {"labels", labels},
+                         {"lost", lost},
+                         {"merged_islands", v.merged_islands},
+                         {"merged_voxels", v.merged_voxels}};
+  for (const UsedIso& iso : v.isos)
+    json["isos"].push_back({{"name", iso.name}, {"value", iso.value}, {"automatic", iso.automatic}});
+  return json;
 }
 
 bool is_flat(const nlohmann::json& json) {

@@ -37,6 +37,7 @@ enum class DiagnosticCode : std::uint8_t {
   creases_changed,
   patches_lost,
   labels_lost,
+  labels_changed,
   time_limit_reached,
   cells_enlarged,
   notes_not_allowed,

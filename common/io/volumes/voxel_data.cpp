@@ -179,7 +179,7 @@ std::string bad_value(const VoxelName& name, const std::string& value, double nu
               ? ", which is not a 32-bit label; number the labels from 0"
               : ", not a whole number; a volume of labels is needed; mesh an image with --iso");
 }
-/// The same with the reason why the value is not one of an image.
+/// Likewise, with the reason why the value is not one of an image.
 std::string bad_value(const VoxelName& name, const std::string& value, double number, float /*kind*/) {
   return name_text(name) + " has the value " + value +
          (std::isfinite(number) ? ", beyond the range of 32-bit floats; scale the values of the image"

@@ -12,6 +12,26 @@
 
 namespace tetwright {
 
+/// The grid that several volumes have in common: that of the first one, to a thousandth of a voxel.
+class CommonGrid {
+ public:
+  /// Takes the grid of the first volume, and checks the others. A volume whose file names another anatomical
+  /// coordinate system than that of the first one (LabelGrid::space) is converted.
+  /// \param file for messages
+  /// \throws InputError if the grid is another one, with both
+  void add(LabelGrid& grid, const std::string& file);
+
+  const std::string& first_file() const { return first_file_; }
+  /// Volumes in other spaces than the first one.
+  std::vector<Diagnostic> findings() const;
+
+ private:
+  std::string first_file_;
+  LabelGrid grid_;  ///< of the first volume
+  /// Spaces of volumes, and how many had each: brought into that of the first one, or taken as they are.
+  std::map<std::string, std::size_t> converted_, unknown_;
+};
+
 /// A mask: the voxels of a volume that have one label.
 struct LabelMask {
   std::string name;     ///< of its material
@@ -67,7 +87,6 @@ class LabelMasks {
   };
 
   void begin(LabelVolume& volume, const std::string& file);
-  void check_grid(LabelGrid& grid, const std::string& file);
   std::string name_of(MaterialTag tag) const;
   Vec3 centre(std::size_t voxel) const;
   void report(Joined& joined) const;
@@ -75,14 +94,12 @@ class LabelMasks {
   OverlapRule rule_;
   std::map<std::string, MaterialTag> tags_;  ///< by name
   LabelVolume result_;
-  std::string first_file_;
+  CommonGrid grid_;
   std::vector<Material> materials_;
   std::vector<Overlap> overlaps_;
   std::vector<bool> in_several_;  ///< by voxel: in several masks; empty: none is
   /// Names of materials of OverlapRule::material. Their labels are -1, -2, ... until all tags are known.
   std::vector<std::string> shared_names_;
-  /// Spaces of volumes, and how many had each: brought into that of the first one, or taken as they are.
-  std::map<std::string, std::size_t> converted_, unknown_;
 };
 
 /// The label of a mask: the one that voxels have besides `outside`.

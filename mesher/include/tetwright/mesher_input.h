@@ -352,8 +352,8 @@ struct LabelChoice {
   std::string names_file;
   std::map<MaterialTag, std::size_t> name_lines;
   MaterialTag outside_label = 0;
-  /// Face-connected islands of fewer voxels are merged into the region with which they share most voxel
-  /// faces; 0 or 1: none.
+  /// Islands of fewer voxels, which touch at least in a corner, are merged into the region with which they
+  /// share most voxel faces; 0 or 1: none.
   std::size_t min_voxels = 8;
 };
 
@@ -371,6 +371,9 @@ struct LabelMaterial {
   std::size_t voxels = 0;          ///< after merging small islands, 1 or more
   std::size_t voxels_in_file = 0;  ///< before merging
   LabelParts parts = {};           ///< after merging
+  /// Volume between the interfaces of an image before merging, voxels; std::nullopt for labels, whose volume is
+  /// that of their voxels.
+  std::optional<double> image_volume = {};
 };
 
 /// A chosen label that is not meshed because all its voxels were in small islands.
@@ -381,14 +384,33 @@ struct LostLabel {
   Vec3 place = Vec3::Zero();  ///< centre of one of its voxels, input units
 };
 
-/// A segmented volume, ready to be meshed.
+class MaterialImage;
+
+/// Two regions with voxels that touch.
+struct LabelContact {
+  MaterialOrOutside first, second;  ///< labels; the outside comes first
+  std::uint64_t faces = 0;          ///< that they share; 0 if they only touch in edges and corners
+  Vec3 place = Vec3::Zero();        ///< centre of a voxel where they touch, input units
+};
+
+/// Two large parts of a label, or of the outside, that became one as an island between them was merged.
+struct FusedParts {
+  MaterialOrOutside label;
+  Vec3 place = Vec3::Zero();  ///< centre of a voxel of the island, input units
+};
+
+/// A segmented volume, or an image divided into materials, ready to be meshed.
 struct LabelInput {
   std::string file;
   std::array<int, 3> size{};
   Vec3 origin = Vec3::Zero();
   Eigen::Matrix3d directions = Eigen::Matrix3d::Identity();
-  std::string space;                     ///< see LabelVolume
-  RegionGrid regions;                    ///< 0 is outside, i + 1 is materials[i]
+  std::string space;   ///< see LabelVolume
+  RegionGrid regions;  ///< 0 is outside, i + 1 is materials[i]
+  /// The image whose values decide where between voxel centres the interfaces are; null for labels.
+  std::shared_ptr<const MaterialImage> image = {};
+  /// Regions of the bands of `image`; on_interface for those without voxels.
+  std::vector<RegionIndex> band_regions = {};
   std::vector<LabelMaterial> materials;  ///< by ascending tag
   std::vector<LostLabel> lost;           ///< by ascending tag
   std::size_t merged_islands = 0;        ///< including those of the outside
@@ -396,7 +418,9 @@ struct LabelInput {
   /// Parts of the outside that do not reach the border of the volume. Parts are not counted if there are
   /// more than 2^32 - 2 runs of equal voxels along the first axis.
   LabelParts outside_parts;
-  std::vector<Diagnostic> findings;  ///< changes to the input, for the user
+  std::vector<LabelContact> contacts = {};  ///< before islands were merged
+  std::vector<FusedParts> fused = {};       ///< by the merging of islands
+  std::vector<Diagnostic> findings;         ///< changes to the input, for the user
 
   std::uint64_t voxel_count() const { return regions.voxels(); }
 };

@@ -78,7 +78,7 @@ class Plain {
       seen[start] = 1;
       std::vector<std::size_t> island{start};
       for (std::size_t i = 0; i < island.size(); ++i)
-        for (std::size_t n : neighbours(island[i]))
+        for (std::size_t n : touching(island[i]))
           if (!seen[n] && regions_[n] == regions_[start]) {
             seen[n] = 1;
             island.push_back(n);
@@ -100,6 +100,17 @@ class Plain {
       }
       return false;
     });
+  }
+
+  std::vector<std::size_t> touching(std::size_t v) const {
+    const int x = static_cast<int>(v) % size_[0], y = static_cast<int>(v) / size_[0] % size_[1],
+              z = static_cast<int>(v) / size_[0] / size_[1];
+    std::vector<std::size_t> result;
+    for (int k = std::max(0, z - 1); k <= std::min(size_[2] - 1, z + 1); ++k)
+      for (int j = std::max(0, y - 1); j <= std::min(size_[1] - 1, y + 1); ++j)
+        for (int i = std::max(0, x - 1); i <= std::min(size_[0] - 1, x + 1); ++i)
+          result.push_back(static_cast<std::size_t>((k * size_[1] + j) * size_[0] + i));
+    return result;
   }
 
   std::vector<std::size_t> neighbours(std::size_t v) const {
@@ -238,12 +249,21 @@ TEST(ConnectedComponents, OutsideIsARegionLikeOthersAndBeyondTheVolumeIsNothing)
   EXPECT_EQ(merged(corner, {3, 3, 3}, 2), Regions(27, 1));
 }
 
-TEST(ConnectedComponents, IslandsHangTogetherByFacesAlone) {
+TEST(ConnectedComponents, IslandsTouchInEdgesAndCorners) {
   EXPECT_EQ(merged_plane("100"
                          "010"
                          "000",
                          2),
+            "100010000");
+  EXPECT_EQ(merged_plane("100"
+                         "010"
+                         "000",
+                         3),
             "000000000");
+  Regions corner(27, 0);
+  corner[0] = corner[13] = corner[26] = 1;
+  EXPECT_EQ(merged(corner, {3, 3, 3}, 3), corner);
+  EXPECT_EQ(merged(corner, {3, 3, 3}, 4), Regions(27, 0));
   // The end of a row or plane does not touch the start of the next.
   EXPECT_EQ(merged_plane("001"
                          "100"
@@ -253,6 +273,17 @@ TEST(ConnectedComponents, IslandsHangTogetherByFacesAlone) {
   Regions planes(18, 0);
   planes[8] = planes[9] = 1;
   EXPECT_EQ(merged(planes, {3, 3, 2}, 2), Regions(18, 0));
+}
+
+TEST(ConnectedComponents, LargeIslandsThatMergingJoinsAreListed) {
+  RegionGrid grid = grid_of({7, 1, 1}, row("1110111"));
+  const IslandMerging merging = merge_small_islands(grid, 3, nullptr);
+  EXPECT_EQ(voxels_of(grid), row("1111111"));
+  ASSERT_EQ(merging.joined.size(), 1u);
+  EXPECT_EQ(merging.joined[0].region, 1);
+  EXPECT_EQ(merging.joined[0].voxel, 3u);
+  RegionGrid others = grid_of({7, 1, 1}, row("1110222"));
+  EXPECT_TRUE(merge_small_islands(others, 3, nullptr).joined.empty());
 }
 
 TEST(ConnectedComponents, NothingIsMergedWhereNoIslandReachesTheNumber) {

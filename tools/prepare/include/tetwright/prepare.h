@@ -17,6 +17,7 @@
 #include "tetwright/compare.h"
 #include "tetwright/diagnostic.h"
 #include "tetwright/io.h"
+#include "tetwright/image_input.h"
 #include "tetwright/label_volume.h"
 #include "tetwright/loop_times.h"
 #include "tetwright/mesh_quality.h"
@@ -52,7 +53,7 @@ struct InputMesh {
 
 /// An input: a file, or a value in memory.
 struct Input {
-  using Value = std::variant<InputFile, InputStream, InputSurface, InputMesh, LabelVolume>;
+  using Value = std::variant<InputFile, InputStream, InputSurface, InputMesh, LabelVolume, ImageVolume>;
 
   // Implicit, to allow prepare({"scan.ply"}) and prepare({{"body", surface}}).
   Input(const char* file) : name(file) {}             // NOLINT(google-explicit-constructor)
@@ -115,6 +116,7 @@ TriangleMesh take_surface(Input& input, std::vector<Dropped>* dropped, double& w
 ReadTetMesh take_tet_mesh(Input& input, const ReadTetMeshOptions& options, double& waited);
 std::unique_ptr<LabelSource> take_label_source(Input& input, double& waited);
 LabelVolume take_label_volume(Input& input, double& waited);
+ImageVolume take_image(Input& input, double& waited);
 
 /// Whether the path has the extension .vdb, in upper or lower case.
 bool is_vdb(const std::string& path);
@@ -215,6 +217,18 @@ struct LabelOptions {
   std::optional<std::size_t> min_voxels;
 };
 
+/// Images that are divided into materials, see ImageChoice.
+struct ImageOptions {
+  /// Thresholds; one without a name is called like the input.
+  std::vector<IsoValue> isos;
+  /// Points where no channel, or no image of several, exceeds this are outside. std::nullopt: images are
+  /// probability maps, and the outside has what they lack to 1.
+  std::optional<double> outside_probability;
+  std::optional<double> smoothing;  ///< standard deviation, voxels
+
+  bool any() const { return !isos.empty() || outside_probability || smoothing; }
+};
+
 /// Targets of simplification.
 struct TargetOptions {
   std::optional<std::size_t> tets;  ///< target number; std::nullopt: as few as the tolerance or sizes allow
@@ -288,6 +302,7 @@ struct PrepareOptions {
   CellOptions cells;
   BodyOptions bodies;
   LabelOptions labels;
+  ImageOptions images;
   BrickOptions bricks;
   FeatureAngle feature_angle;  ///< determines which edges stay sharp
   TargetOptions target;
@@ -313,7 +328,9 @@ struct VolumeReport {
         lost(from.lost),
         outside_parts(from.outside_parts),
         merged_islands(from.merged_islands),
-        merged_voxels(from.merged_voxels) {}
+        merged_voxels(from.merged_voxels),
+        contacts(from.contacts),
+        fused(from.fused) {}
   /// Distance between voxels along each axis, input units.
   Vec3 spacing() const { return directions.colwise().norm(); }
 
@@ -325,6 +342,9 @@ struct VolumeReport {
   std::vector<LostLabel> lost;
   LabelParts outside_parts;
   std::size_t merged_islands, merged_voxels;
+  std::vector<LabelContact> contacts;  ///< before islands were merged
+  std::vector<FusedParts> fused;       ///< by the merging of islands
+  std::vector<UsedIso> isos = {};  ///< of an image
 };
 
 /// Edge lengths requested by SizeOptions.

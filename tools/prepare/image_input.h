@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <vector>
+
+#include "tetwright/image_input.h"
+#include "tetwright/prepare_steps.h"
+
+namespace tetwright {
+
+/// Whether volumes are images to be divided into materials: if an option of images is given, or a volume in
+/// memory is an image, or if the first one of several has values that are not whole numbers, like probability
+/// maps.
+/// \throws InputError in the cases of read_image()
+bool are_images(std::vector<Input>& volumes, PrepareRun& run);
+
+/// Whether the only volume, which is a file, is an image with several channels. Reads all of it.
+bool has_channels(const std::vector<Input>& volumes);
+
+/// Reads images and divides them into materials. Adds thresholds and notes to the report.
+/// \pre are_images()
+/// \throws UsageError for thresholds or names that do not fit the images
+/// \throws Error in the cases of read_image(), CommonGrid and make_image_input()
+LabelInput read_images(std::vector<Input>& volumes, PrepareRun& run);
+
+}  // namespace tetwright
