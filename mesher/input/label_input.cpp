@@ -277,6 +277,12 @@ LabelInput make_label_input(std::unique_ptr<const LabelSource> source, const std
                                .what = "volume whose file gives no spacing",
                                .count = 1,
                                .done = "each voxel has the size 1"});
+  if (grid.spacing_replaced)
+    result.findings.push_back({.code = DiagnosticCode::spacing_replaced,
+                               .file = file,
+                               .what = "volume whose file gives another spacing",
+                               .count = 1,
+                               .done = "that of --spacing is used"});
   if (progress) progress->throw_if_stopped();
 
   std::size_t outside = result.voxel_count();

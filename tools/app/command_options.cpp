@@ -17,6 +17,7 @@
 #include "tools/app/command_line.h"
 #include "tools/app/label_ranges.h"
 #include "tools/app/option_values.h"
+#include "tools/app/volume_options.h"
 
 namespace tetwright {
 
@@ -328,6 +329,7 @@ void add_prepare(CLI::App& app, CommandLine& c) {
   add_mesh_output(app, c);
   add_simplifying(app, c);
   add_meshing(app, c, "what the target needs");
+  add_volume_file(app, c.options.volume_file);
   add_labels(app, c);
   add_bricks(app, c);
   add_stats(app, c);
@@ -342,6 +344,7 @@ void add_mesh(CLI::App& app, CommandLine& c) {
   add_mesh_output(app, c);
   add_meshing(app, c, "128, or with --tolerance what that needs; for segmented volumes one cell per voxel");
   add_tolerance(app, c);
+  add_volume_file(app, c.options.volume_file);
   add_labels(app, c);
   add_stats(app, c);
   add_common(app, c);

@@ -16,6 +16,7 @@
 
 #include "tetwright/compare.h"
 #include "tetwright/diagnostic.h"
+#include "tetwright/image_volume.h"
 #include "tetwright/io.h"
 #include "tetwright/label_volume.h"
 #include "tetwright/loop_times.h"
@@ -52,7 +53,7 @@ struct InputMesh {
 
 /// An input: a file, or a value in memory.
 struct Input {
-  using Value = std::variant<InputFile, InputStream, InputSurface, InputMesh, LabelVolume>;
+  using Value = std::variant<InputFile, InputStream, InputSurface, InputMesh, LabelVolume, ImageVolume>;
 
   // Implicit, to allow prepare({"scan.ply"}) and prepare({{"body", surface}}).
   Input(const char* file) : name(file) {}             // NOLINT(google-explicit-constructor)
@@ -100,12 +101,16 @@ struct Input {
   Value value = InputFile{};
   std::string material;  ///< or the name of a sheet; empty: the name of the input
   bool mask = false;     ///< a volume with one material, see LabelMasks; several volumes always are
+  VolumeFileOptions volume_file = {};  ///< of a volume in a file; prepare() sets PrepareOptions::volume_file
   enum class Role : std::uint8_t { body, sheet, partition };
   Role role = Role::body;
 };
 
 /// Reads or moves out the value of an input; files are read by the readers of io.h. Volumes in files are read
 /// only when their source is.
+///
+/// Volumes in memory are labels as well as images if their values allow it: take_label_volume() takes an
+/// image of one channel and whole numbers, take_image() labels.
 ///
 /// \param dropped receives the contents that were not kept; may be null
 /// \param waited time spent waiting for a stream, seconds; added to the previous value
@@ -115,6 +120,7 @@ TriangleMesh take_surface(Input& input, std::vector<Dropped>* dropped, double& w
 ReadTetMesh take_tet_mesh(Input& input, const ReadTetMeshOptions& options, double& waited);
 std::unique_ptr<LabelSource> take_label_source(Input& input, double& waited);
 LabelVolume take_label_volume(Input& input, double& waited);
+ImageVolume take_image(Input& input, double& waited);
 
 /// Whether the path has the extension .vdb, in upper or lower case.
 bool is_vdb(const std::string& path);
@@ -288,6 +294,7 @@ struct PrepareOptions {
   CellOptions cells;
   BodyOptions bodies;
   LabelOptions labels;
+  VolumeFileOptions volume_file;  ///< spacing of volumes, and contents of .raw files
   BrickOptions bricks;
   FeatureAngle feature_angle;  ///< determines which edges stay sharp
   TargetOptions target;
