@@ -18,6 +18,13 @@ std::uint64_t LabelGrid::voxels() const {
          static_cast<std::uint64_t>(size[2]);
 }
 
+void set_spacing(LabelGrid& grid, const Vec3& spacing) {
+  const Vec3 before = grid.directions.colwise().norm();
+  grid.spacing_replaced = !grid.spacing_assumed && before != spacing;
+  grid.spacing_assumed = false;
+  for (int axis = 0; axis < 3; ++axis) grid.directions.col(axis) *= spacing[axis] / before[axis];
+}
+
 namespace {
 
 /// Directions of the three axes: "left", "posterior", "superior". Empty unless there are three.

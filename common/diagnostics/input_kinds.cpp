@@ -242,10 +242,16 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
      .severity = Severity::note,
      .title = "volume without spacing",
      .message = "1 volume whose file gives no spacing (each voxel has the size 1)",
-     .cause = "A zarr array outside of an OME-Zarr image, an HDF5 dataset without `element_size_um`, or a "
-              "TIFF file "
-              "without resolution.",
-     .remedy = "Write the spacing into the file, or scale the mesh where you use it."},
+     .cause = "A zarr array outside of an OME-Zarr image, an HDF5 dataset without `element_size_um`, a TIFF "
+              "file without resolution, or a `.npy` or `.raw` file.",
+     .remedy = "`--spacing`, or write the spacing into the file."},
+    {.code = spacing_replaced,
+     .name = "spacing-replaced",
+     .severity = Severity::note,
+     .title = "spacing of a file replaced",
+     .message = "1 volume whose file gives another spacing (that of --spacing is used)",
+     .cause = "`--spacing` was given, and the file has a spacing of its own.",
+     .remedy = "None if that is wanted; else leave out `--spacing`."},
     {.code = islands_merged,
      .name = "islands-merged",
      .severity = Severity::note,

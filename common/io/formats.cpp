@@ -77,7 +77,7 @@ bool is_for(const TetFormat& format, FileUse use) {
 
 bool is_one_file(const SurfaceFormat&) { return true; }
 bool is_one_file(const TetFormat& format) { return format.read != nullptr; }
-bool is_one_file(const VolumeFormat& format) { return format.read && format.one_file; }
+bool is_one_file(const VolumeFormat& format) { return (format.read && format.one_file) || format.headerless; }
 
 /// Extension that selects among the formats.
 template <class Format>
@@ -209,8 +209,12 @@ ReadTetMesh measurable(ReadTetMesh read, const std::string& name) {
   return read;
 }
 
+const VolumeFormat& need_volume_format(const std::string& path) {
+  return need_format(volume_formats(), path, FileKind::volume, FileUse::read);
+}
+
 const VolumeFormat& streamed_volume_format(const std::string& name, const std::string& extension) {
-  return streamed(need_format(volume_formats(), name + extension, FileKind::volume, FileUse::read), name);
+  return streamed(need_volume_format(name + extension), name);
 }
 
 NameRules names_of_groups(const SurfaceFormat& format) {
@@ -355,12 +359,15 @@ ReadTetMesh read_tet_mesh_bytes(std::string_view bytes, const std::string& name,
 }
 
 LabelVolume read_label_volume_bytes(std::string_view bytes, const std::string& name,
-                                    const std::string& extension) {
-  return labels_of(volume_of_bytes(streamed_volume_format(name, extension), bytes, name, VoxelUse::labels));
+                                    const std::string& extension, const VolumeFileOptions& options) {
+  return labels_of(
+      volume_of_bytes(streamed_volume_format(name, extension), bytes, name, VoxelUse::labels, options));
 }
 
-ImageVolume read_image_bytes(std::string_view bytes, const std::string& name, const std::string& extension) {
-  return image_of(volume_of_bytes(streamed_volume_format(name, extension), bytes, name, VoxelUse::image));
+ImageVolume read_image_bytes(std::string_view bytes, const std::string& name, const std::string& extension,
+                             const VolumeFileOptions& options) {
+  return image_of(
+      volume_of_bytes(streamed_volume_format(name, extension), bytes, name, VoxelUse::image, options));
 }
 
 std::string streamed_extensions() {
@@ -391,30 +398,25 @@ std::optional<SurfaceWithFields> read_surface_with_fields(const std::string& pat
   return format->read_with_fields(read_whole_file(path), path);
 }
 
-LabelVolume read_label_volume(const std::string& path) {
-  return read_whole_volume(need_format(volume_formats(), path, FileKind::volume, FileUse::read), path);
+LabelVolume read_label_volume(const std::string& path, const VolumeFileOptions& options) {
+  return read_whole_volume(need_volume_format(path), path, options);
 }
 
-ImageVolume read_image(const std::string& path) {
-  return read_whole_image(need_format(volume_formats(), path, FileKind::volume, FileUse::read), path);
+ImageVolume read_image(const std::string& path, const VolumeFileOptions& options) {
+  return read_whole_image(need_volume_format(path), path, options);
 }
 
-std::int64_t label_layers(const std::string& path) {
-  return layers_of(need_format(volume_formats(), path, FileKind::volume, FileUse::read), path);
-}
+std::int64_t label_layers(const std::string& path) { return layers_of(need_volume_format(path), path); }
 
-std::vector<LabelVolume> read_label_layers(const std::string& path) {
-  const VolumeFormat& format = need_format(volume_formats(), path, FileKind::volume, FileUse::read);
-  if (format.read_layers) return format.read_layers(read_whole_file(path), path, read_whole_file);
-  std::vector<LabelVolume> one;
-  one.push_back(read_whole_volume(format, path));
-  return one;
+std::vector<LabelVolume> read_label_layers(const std::string& path, const VolumeFileOptions& options) {
+  return read_layers(need_volume_format(path), path, options);
 }
 
 std::unique_ptr<LabelSource> open_label_source(const std::string& path, const LabelSourceOptions& options) {
-  const VolumeFormat& format = need_format(volume_formats(), path, FileKind::volume, FileUse::read);
-  if (auto source = open_by_boxes(format, path, options.cache_bytes)) return source;
-  return std::make_unique<MemoryLabelSource>(read_whole_volume(format, path));
+  const VolumeFormat& format = need_volume_format(path);
+  if (auto source = open_by_boxes(format, path, options.cache_bytes, VoxelUse::labels, options.file))
+    return source;
+  return std::make_unique<MemoryLabelSource>(read_whole_volume(format, path, options.file));
 }
 
 void write_surface(const TriangleMesh& mesh, const std::string& path, OutputFiles* files,

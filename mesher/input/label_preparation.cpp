@@ -172,6 +172,12 @@ void set_grid(const LabelGrid& grid, const std::string& file, LabelInput& result
                                .what = "volume whose file gives no spacing",
                                .count = 1,
                                .done = "each voxel has the size 1"});
+  if (grid.spacing_replaced)
+    result.findings.push_back({.code = DiagnosticCode::spacing_replaced,
+                               .file = file,
+                               .what = "volume whose file gives another spacing",
+                               .count = 1,
+                               .done = "that of --spacing is used"});
 }
 
 void prepare_regions(LabelInput& result, std::size_t min_voxels, const std::string& none_outside,

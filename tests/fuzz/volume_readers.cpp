@@ -15,6 +15,7 @@
 #include "common/io/volumes/inr.h"
 #include "common/io/volumes/metaimage.h"
 #include "common/io/volumes/nifti.h"
+#include "common/io/volumes/npy.h"
 #include "common/io/volumes/nrrd.h"
 #include "common/io/volumes/tiff_stack.h"
 #include "common/io/volumes/zarr.h"
@@ -94,6 +95,11 @@ void run_source(const LabelSource& source) {
     TETWRIGHT_CHECK(std::equal(labels.begin(), labels.end(),
                                volume.labels.begin() + static_cast<std::ptrdiff_t>(slice) * z));
   }
+}
+
+/// Reads the labels of an array of NumPy.
+LabelVolume read_npy_alone(std::string_view bytes, const std::string& name, const FileReader& others) {
+  return labels_of(open_npy(bytes, name, others, VoxelUse::labels));
 }
 
 /// Reads an image as a whole and by its slices.
@@ -185,6 +191,12 @@ constexpr Target targets[] = {
     {"metaimage", [](Bytes b) { run(b, read_metaimage, open_metaimage); }},
     {"nifti", [](Bytes b) { run(b, read_nifti, open_nifti); }},
     {"inr", [](Bytes b) { run(b, read_inr_alone, open_inr); }},
+    {"npy",
+     [](Bytes b) {
+       run(b, read_npy_alone, open_npy);
+       const NamedMemory file(b);
+       run_both([&](VoxelUse use) { return find_raw_volume(file.path(), find_npy, use); });
+     }},
     {"zarr", run_zarr},
     {"tiff",
      [](Bytes b) {

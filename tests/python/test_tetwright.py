@@ -270,6 +270,35 @@ def test_errors_carry_the_programs_message(ball, ball_arrays):
     assert isinstance(caught.value, OSError)
 
 
+def test_arrays_and_files_of_numpy(tmp_path):
+    labels = labels_of_two_balls()
+    expected = tetwright.mesh(labels, spacing=(1, 2, 3), resolution=12)
+    # In a file the axis that varies fastest is x.
+    np.save(tmp_path / "c.npy", np.ascontiguousarray(labels.transpose()))
+    np.save(tmp_path / "f.npy", np.asfortranarray(labels.astype(np.float32)))
+    labels.transpose().astype(">i4").tofile(tmp_path / "v.raw")
+    for file, options in (("c.npy", {}), ("f.npy", {}),
+                          ("v.raw", dict(dimensions=labels.shape, voxel_type="int32be"))):
+        made = tetwright.mesh(tmp_path / file, spacing=(1, 2, 3), resolution=12, **options)
+        assert np.array_equal(made.points, expected.points) and np.array_equal(made.tets, expected.tets), file
+    assert np.array_equal(tetwright.mesh(labels.astype(float), spacing=(1, 2, 3), resolution=12).points,
+                          expected.points)
+
+
+def test_arrays_of_fractions_are_images():
+    image = np.zeros((4, 4, 4), np.float64)
+    image[1, 2, 3] = 0.5
+    with pytest.raises(tetwright.InputError, match=r"voxel \(1, 2, 3\) has the value 0.5, not a whole number; .*--iso"):
+        tetwright.mesh(image)
+    image[1, 2, 3] = np.nan
+    with pytest.raises(tetwright.InputError, match=r"voxel \(1, 2, 3\) has the value nan, not a finite number"):
+        tetwright.mesh(image)
+    with pytest.raises(tetwright.InputError, match="2 channels; a volume with one label per voxel is needed"):
+        tetwright.mesh(np.zeros((4, 4, 4, 2), np.float32))
+    with pytest.raises(tetwright.InputError, match="not finite or lie in a plane"):
+        tetwright.mesh(np.full((4, 4, 4), 0.5), affine=np.zeros((4, 4)))
+
+
 def test_what_falls_short_is_a_warning(ball):
     with pytest.warns(tetwright.ShortfallWarning, match="tolerance"):
         mesh = tetwright.prepare(ball, target_tets=200, tolerance="1%", resolution=12)

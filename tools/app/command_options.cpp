@@ -18,6 +18,7 @@
 #include "tools/app/image_options.h"
 #include "tools/app/label_ranges.h"
 #include "tools/app/option_values.h"
+#include "tools/app/volume_options.h"
 
 namespace tetwright {
 
@@ -329,6 +330,7 @@ void add_prepare(CLI::App& app, CommandLine& c) {
   add_mesh_output(app, c);
   add_simplifying(app, c);
   add_meshing(app, c, "what the target needs");
+  add_volume_file(app, c.options.volume_file);
   add_labels(app, c);
   add_images(app, c);
   add_bricks(app, c);
@@ -344,6 +346,7 @@ void add_mesh(CLI::App& app, CommandLine& c) {
   add_mesh_output(app, c);
   add_meshing(app, c, "128, or with --tolerance what that needs; for segmented volumes one cell per voxel");
   add_tolerance(app, c);
+  add_volume_file(app, c.options.volume_file);
   add_labels(app, c);
   add_images(app, c);
   add_stats(app, c);

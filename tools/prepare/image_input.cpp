@@ -75,10 +75,9 @@ void fit_thresholds(const std::vector<Input>& inputs, std::size_t channels, cons
 
 bool are_images(std::vector<Input>& volumes, PrepareRun& run) {
   if (run.options.images.any()) return true;
-  if (std::any_of(volumes.begin(), volumes.end(),
-                  [](const Input& input) { return std::holds_alternative<ImageVolume>(input.value); }))
-    return true;
   Input& first = volumes.front();
+  if (const auto* image = std::get_if<ImageVolume>(&first.value))
+    return image->channels.size() > 1 || (volumes.size() > 1 && has_fractions(*image));
   if (volumes.size() == 1 || !std::holds_alternative<InputFile>(first.value) || label_layers(first.name) > 1)
     return false;
   return has_fractions(take_image(first, run.seconds_waited));
@@ -88,7 +87,7 @@ bool has_channels(const std::vector<Input>& volumes) {
   const Input& first = volumes.front();
   if (volumes.size() > 1 || !std::holds_alternative<InputFile>(first.value)) return false;
   try {
-    return read_image(first.name).channels.size() > 1;
+    return read_image(first.name, first.volume_file).channels.size() > 1;
   } catch (const InputError&) {
     return false;
   }

@@ -8,9 +8,9 @@
 
 namespace tetwright {
 
-/// Whether volumes are images to be divided into materials: if an option of images is given, or a volume in
-/// memory is an image, or if the first one of several has values that are not whole numbers, like probability
-/// maps.
+/// Whether volumes are images to be divided into materials: if an option of images is given, if a volume in
+/// memory has several channels, or if the first one of several has values that are not whole numbers, like
+/// probability maps.
 /// \throws InputError in the cases of read_image()
 bool are_images(std::vector<Input>& volumes, PrepareRun& run);
 

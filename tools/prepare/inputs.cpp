@@ -5,6 +5,7 @@
 
 #include "common/geometry/measurable.h"
 #include "common/io/names/mesh_fields.h"
+#include "common/io/volumes/encoded_volume.h"
 #include "common/lower_case.h"
 #include "tetwright/prepare_steps.h"
 
@@ -68,29 +69,26 @@ ReadTetMesh take_tet_mesh(Input& input, const ReadTetMeshOptions& options, doubl
 
 LabelVolume take_label_volume(Input& input, double& waited) {
   if (auto* volume = std::get_if<LabelVolume>(&input.value)) return std::move(*volume);
+  if (const auto* image = std::get_if<ImageVolume>(&input.value)) return labels_of(*image, input.name);
   if (const auto* stream = std::get_if<InputStream>(&input.value))
-    return read_label_volume_bytes(read_stream(*stream, waited), input.name, stream->extension);
-  return read_label_volume(input.name);
+    return read_label_volume_bytes(read_stream(*stream, waited), input.name, stream->extension,
+                                   input.volume_file);
+  return read_label_volume(input.name, input.volume_file);
 }
 
 ImageVolume take_image(Input& input, double& waited) {
   if (auto* image = std::get_if<ImageVolume>(&input.value)) return std::move(*image);
-  if (auto* volume = std::get_if<LabelVolume>(&input.value)) {
-    ImageVolume image;
-    static_cast<LabelGrid&>(image) = *volume;
-    image.channels.emplace_back(volume->labels.begin(), volume->labels.end());
-    return image;
-  }
+  if (const auto* volume = std::get_if<LabelVolume>(&input.value)) return image_of(*volume);
   if (const auto* stream = std::get_if<InputStream>(&input.value))
-    return read_image_bytes(read_stream(*stream, waited), input.name, stream->extension);
-  return read_image(input.name);
+    return read_image_bytes(read_stream(*stream, waited), input.name, stream->extension, input.volume_file);
+  return read_image(input.name, input.volume_file);
 }
 
 std::unique_ptr<LabelSource> take_label_source(Input& input, double& waited) {
   if (!std::holds_alternative<InputFile>(input.value))
     return std::make_unique<MemoryLabelSource>(take_label_volume(input, waited));
   constexpr std::size_t cache_bytes = std::size_t{1} << 24;  // each chunk is needed once
-  return open_label_source(input.name, {.cache_bytes = cache_bytes});
+  return open_label_source(input.name, {.cache_bytes = cache_bytes, .file = input.volume_file});
 }
 
 }  // namespace tetwright

@@ -221,7 +221,7 @@ LabelVolume join_masks(std::vector<Input>& volumes, LabelChoice& choice, Prepare
         throw UsageError(file +
                          " has several segments, each a material with its own name; leave out the name " +
                          input.material);
-      layers = read_label_layers(file);
+      layers = read_label_layers(file, input.volume_file);
       for (const LabelVolume& layer : layers) of_layers.push_back(segments_of(layer, choice.outside_label));
     } else {
       layers.push_back(take_label_volume(input, run.seconds_waited));

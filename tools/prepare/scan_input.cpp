@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/lower_case.h"
 #include "common/unique_names.h"
 #include "common/utf8.h"
 #include "mesher/input/qualified_names.h"
@@ -43,6 +44,22 @@ void check_input_kinds(const std::vector<Input>& inputs, Task task) {
   }
 }
 
+/// Rejects facts about files of volumes if there is no such file.
+void check_volume_file(const std::vector<Input>& inputs, const VolumeFileOptions& options, bool volume) {
+  check_volume_options(options);
+  const bool file = volume && std::any_of(inputs.begin(), inputs.end(), [](const Input& input) {
+                      return !input.is_value() && !input.is_vdb_file();
+                    });
+  if (options.spacing && !file)
+    throw UsageError("--spacing is for volumes in files other than .vdb, and no input is one");
+  const bool raw = file && std::any_of(inputs.begin(), inputs.end(), [](const Input& input) {
+                     return !input.is_value() && lower_case(input.typed_name()).ends_with(".raw");
+                   });
+  if ((options.dimensions || !options.voxel_type.empty()) && !raw)
+    throw UsageError(
+        "--dimensions and --voxel-type are for files of voxels alone (.raw), and no input is one");
+}
+
 /// Whether the input is a segmented volume, or several masks. The kind of a .vdb file is known only after
 /// reading; its labels are stored in `vdb_labels`.
 bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
@@ -55,6 +72,7 @@ bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
     volume |= vdb_labels.has_value();
   }
   const LabelOptions& labels = options.labels;
+  check_volume_file(inputs, options.volume_file, volume);
   if (!volume) {
     if (!labels.meshed.empty() || !labels.names_file.empty() || labels.outside || labels.min_voxels)
       throw UsageError(
@@ -290,6 +308,7 @@ ScanInput read_scan(std::vector<Input> inputs, PrepareRun& run) {
   run.progress.begin_stage("read");
   inputs = with_masks_of_folders(std::move(inputs), run.report);
   check_input_kinds(inputs, run.task);
+  for (Input& input : inputs) input.volume_file = run.options.volume_file;
   std::optional<LabelVolume> vdb_labels;
   ScanInput input = is_volume(inputs, run.options, vdb_labels)
                         ? ScanInput(read_volume(std::move(vdb_labels), inputs, run))

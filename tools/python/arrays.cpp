@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include "common/io/names/mesh_fields.h"
+#include "common/io/volumes/encoded_volume.h"
 #include "common/message_text.h"
 #include "tetwright/error.h"
 #include "tetwright/io.h"
@@ -172,30 +175,59 @@ SizesObject to_sizes(const std::string& name, const Points& points, const Cells&
   return sizes;
 }
 
+namespace {
+
+/// Grid of an array with at least three axes.
+LabelGrid to_grid(const std::string& name, const py::array& voxels, const std::array<double, 3>& origin,
+                  const std::array<std::array<double, 3>, 3>& directions) {
+  LabelGrid grid;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const py::ssize_t count = voxels.shape(static_cast<py::ssize_t>(a));
+    if (count > std::numeric_limits<int>::max())
+      throw InputError(name, 0, "has more than 2147483647 voxels along an axis; give a part of it");
+    grid.size[a] = static_cast<int>(count);
+  }
+  grid.origin = Vec3(origin[0], origin[1], origin[2]);
+  for (Eigen::Index row = 0; row < 3; ++row)
+    for (Eigen::Index column = 0; column < 3; ++column)
+      grid.directions(row, column) =
+          directions[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
+  if (!grid.origin.allFinite() || !grid.directions.allFinite() || grid.directions.determinant() == 0)
+    throw InputError(
+        name, 0,
+        "its origin and steps between voxels are not finite or lie in a plane; give a spacing above 0, "
+        "or an affine that can be inverted");
+  return grid;
+}
+
+}  // namespace
+
 LabelVolume to_volume(const std::string& name, const Labels& labels, const std::array<double, 3>& origin,
                       const std::array<std::array<double, 3>, 3>& directions) {
   if (labels.ndim() != 3 || labels.size() == 0)
     throw InputError(name, 0,
                      "labels are an array of shape " + shape_text(labels) + "; give one of three axes");
-  LabelVolume volume;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const py::ssize_t count = labels.shape(static_cast<py::ssize_t>(a));
-    if (count > std::numeric_limits<int>::max())
-      throw InputError(name, 0, "has more than 2147483647 voxels along an axis; give a part of it");
-    volume.size[a] = static_cast<int>(count);
-  }
-  volume.origin = Vec3(origin[0], origin[1], origin[2]);
-  for (Eigen::Index row = 0; row < 3; ++row)
-    for (Eigen::Index column = 0; column < 3; ++column)
-      volume.directions(row, column) =
-          directions[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
-  if (!volume.origin.allFinite() || !volume.directions.allFinite() || volume.directions.determinant() == 0)
-    throw InputError(
-        name, 0,
-        "its origin and steps between voxels are not finite or lie in a plane; give a spacing above 0, "
-        "or an affine that can be inverted");
+  LabelVolume volume{to_grid(name, labels, origin, directions), {}};
   volume.labels.assign(labels.data(), labels.data() + labels.size());
   return volume;
+}
+
+ImageVolume to_image(const std::string& name, const Pixels& values, const std::array<double, 3>& origin,
+                     const std::array<std::array<double, 3>, 3>& directions) {
+  if ((values.ndim() != 3 && values.ndim() != 4) || values.size() == 0)
+    throw InputError(name, 0,
+                     "the image is an array of shape " + shape_text(values) +
+                         "; give one of three axes, or four if the last one is that of channels");
+  const LabelGrid grid = to_grid(name, values, origin, directions);
+  const std::int64_t channels = values.ndim() == 4 ? values.shape(3) : 1;
+  check_channels(channels,
+                 checked_size(std::vector<std::int64_t>(grid.size.begin(), grid.size.end()), name, 0),
+                 VoxelUse::image, name, 0);
+  // Checks the values, too.
+  const std::string_view bytes(reinterpret_cast<const char*>(values.data()),
+                               static_cast<std::size_t>(values.size()) * sizeof(float));
+  return image_of(EncodedVolume{
+      grid, {channels, 3}, {.type = VoxelType::float32}, ByteSource(bytes, ByteSource::Packing::none, name)});
 }
 
 }  // namespace tetwright::python

@@ -301,6 +301,11 @@ PYBIND11_MODULE(_core, module) {
            [](NamedInputs& to, const std::string& name, const Labels& labels,
               const std::array<double, 3>& origin, const std::array<std::array<double, 3>, 3>& directions) {
              to.values[name] = to_volume(name, labels, origin, directions);
+           })
+      .def("add_image",
+           [](NamedInputs& to, const std::string& name, const Pixels& values,
+              const std::array<double, 3>& origin, const std::array<std::array<double, 3>, 3>& directions) {
+             to.values[name] = to_image(name, values, origin, directions);
            });
 
   bind_mesh(module);

@@ -89,6 +89,7 @@ enum class DiagnosticCode : std::uint8_t {
   // Segmented volumes.
   no_outside,
   spacing_assumed,
+  spacing_replaced,
   islands_merged,
   islands_all_small,
   masks_overlap,

@@ -26,6 +26,9 @@ class LabelSource {
   LabelSource& operator=(const LabelSource&) = delete;
 
   const LabelGrid& grid() const { return grid_; }
+  /// Sets the distance between voxels, see tetwright::set_spacing(). Not to be called concurrently with other
+  /// functions.
+  void set_spacing(const Vec3& spacing) { tetwright::set_spacing(grid_, spacing); }
 
   /// Voxels along each axis of the blocks in which the labels are stored. Boxes whose corners are multiples
   /// of it decode each block once. A block may extend beyond the grid.

@@ -29,6 +29,8 @@ struct LabelGrid {
   std::map<MaterialTag, std::string> names = {};
   /// Colours of labels in the file: red, green, blue, each 0 to 1.
   std::map<MaterialTag, std::array<double, 3>> colours = {};
+  /// True if the file gives another spacing than set_spacing() did.
+  bool spacing_replaced = false;
 
   /// Position of a voxel index, input units. `index` may be fractional.
   Vec3 to_input(const Vec3& index) const;
@@ -41,6 +43,10 @@ struct LabelGrid {
 /// \param space see LabelGrid::space
 /// \return false if nothing changed: the systems are equal, or one of them is unknown
 bool change_space(LabelGrid& grid, const std::string& space);
+
+/// Sets the distance between voxels along each axis, and keeps the axes and the origin.
+/// \param spacing input units, above 0
+void set_spacing(LabelGrid& grid, const Vec3& spacing);
 
 /// A segmented volume in memory: a label for each voxel.
 struct LabelVolume : LabelGrid {

@@ -44,6 +44,14 @@ LabelVolume labels_of(EncodedVolume volume);
 /// \throws OutputError if the values exceed available_memory()
 ImageVolume image_of(EncodedVolume volume);
 
+/// Converts an image of one channel to labels.
+/// \param file file name for messages
+/// \throws InputError if there are several channels, or at the first voxel whose value is not a label
+LabelVolume labels_of(const ImageVolume& image, const std::string& file);
+
+/// Converts labels to the values of an image of one channel.
+ImageVolume image_of(const LabelVolume& labels);
+
 /// Reads the labels of each channel.
 std::vector<std::vector<MaterialTag>> labels_of_channels(EncodedVolume volume);
 

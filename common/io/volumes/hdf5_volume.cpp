@@ -48,7 +48,8 @@ std::optional<Hdf5Type> number_type(hid_t stored) {
     return base.good() ? number_type(base.id()) : std::nullopt;
   }
   const std::size_t bytes = H5Tget_size(stored);
-  if (kind == H5T_FLOAT && bytes == 4) return Hdf5Type{VoxelType::float32, H5T_NATIVE_FLOAT};
+  // The library converts halves.
+  if (kind == H5T_FLOAT && (bytes == 2 || bytes == 4)) return Hdf5Type{VoxelType::float32, H5T_NATIVE_FLOAT};
   if (kind == H5T_FLOAT && bytes == 8) return Hdf5Type{VoxelType::float64, H5T_NATIVE_DOUBLE};
   if (kind != H5T_INTEGER) return std::nullopt;
   const bool whole = H5Tget_sign(stored) == H5T_SGN_2;

@@ -58,6 +58,7 @@ VoxelType sample_type(std::uint16_t format, std::uint16_t bits, const std::strin
     if (bits == 32) return VoxelType::int32;
     if (bits == 64) return VoxelType::int64;
   } else if (format == SAMPLEFORMAT_IEEEFP) {
+    if (bits == 16) return VoxelType::float16;
     if (bits == 32) return VoxelType::float32;
     if (bits == 64) return VoxelType::float64;
   }

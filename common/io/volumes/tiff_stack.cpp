@@ -103,15 +103,10 @@ TiffStack pages_of_file(const std::string& path, VoxelUse use) {
   return stack;
 }
 
-TiffStack pages_of_folder(const std::string& path, VoxelUse use) {
-  TiffStack stack{.use = use};
-  std::error_code error;
-  for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
-    if (is_tiff_file(*entry)) stack.files.push_back(entry->path().string());
-  if (error) throw InputError("cannot read " + path + ": " + error.message());
-  if (stack.files.empty()) throw InputError(path + ": there is no .tif file in the folder");
+/// \param stack its files have one page each, or one file has all
+TiffStack pages_of_files(TiffStack stack) {
   std::sort(stack.files.begin(), stack.files.end(), natural_less);
-  if (stack.files.size() == 1) return pages_of_file(stack.files[0], use);
+  if (stack.files.size() == 1) return pages_of_file(stack.files[0], stack.use);
   for (const std::string& name : stack.files) {
     TiffFile file(name);
     stack.add(file, name);
@@ -121,6 +116,53 @@ TiffStack pages_of_folder(const std::string& path, VoxelUse use) {
                        "of files of one page");
   }
   return stack;
+}
+
+/// Whether a name fits a pattern in which * is any text and ? any character.
+bool fits_pattern(std::string_view name, std::string_view pattern) {
+  // Position after the last * and the text that it takes: it takes more whenever what follows does not fit.
+  std::size_t n = 0, p = 0, star = std::string_view::npos, taken = 0;
+  while (n < name.size()) {
+    if (p < pattern.size() && pattern[p] == '*') {
+      star = ++p;
+      taken = n;
+    } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == name[n])) {
+      ++n;
+      ++p;
+    } else if (star != std::string_view::npos) {
+      p = star;
+      n = ++taken;
+    } else {
+      return false;
+    }
+  }
+  while (p < pattern.size() && pattern[p] == '*') ++p;
+  return p == pattern.size();
+}
+
+/// The stack of the TIFF files in a folder whose names fit the pattern.
+TiffStack pages_of_folder(const std::string& folder, const std::string& pattern, VoxelUse use) {
+  TiffStack stack{.use = use};
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (is_tiff_file(*entry) && fits_pattern(entry->path().filename().string(), pattern))
+      stack.files.push_back(entry->path().string());
+  if (error) throw InputError("cannot read " + folder + ": " + error.message());
+  if (stack.files.empty())
+    throw InputError(pattern == "*"
+                         ? folder + ": there is no .tif file in the folder"
+                         : (fs::path(folder) / pattern).string() + ": no .tif file has such a name");
+  return pages_of_files(std::move(stack));
+}
+
+TiffStack pages_at(const std::string& path, VoxelUse use) {
+  std::error_code error;
+  if (fs::is_directory(path, error)) return pages_of_folder(path, "*", use);
+  const fs::path file(path);
+  const std::string name = file.filename().string();
+  if (name.find_first_of("*?") == std::string::npos || fs::exists(path, error))
+    return pages_of_file(path, use);
+  return pages_of_folder(file.has_parent_path() ? file.parent_path().string() : ".", name, use);
 }
 
 /// The order of the pages of slices and channels.
@@ -367,8 +409,7 @@ bool has_tiff_files(const std::string& folder) {
 }
 
 std::unique_ptr<VoxelSource> open_tiff_stack(const std::string& path, std::size_t cache_bytes, VoxelUse use) {
-  std::error_code error;
-  TiffStack stack = fs::is_directory(path, error) ? pages_of_folder(path, use) : pages_of_file(path, use);
+  TiffStack stack = pages_at(path, use);
   const TiffPage& first = stack.pages[0].shape;
   const PageOrder order = page_order(stack.files[0], stack);
   LabelGrid grid;

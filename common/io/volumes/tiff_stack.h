@@ -10,8 +10,9 @@
 
 namespace tetwright {
 
-/// Opens a stack of grey images: the pages of a TIFF or BigTIFF file, or the files of one page in a folder,
-/// ordered by their names (slice_2 before slice_10). Rows are the second axis, pages the third one.
+/// Opens a stack of grey images: the pages of a TIFF or BigTIFF file, or the files of one page in a folder
+/// or of a pattern ("slice_*.tif"), ordered by their names (slice_2 before slice_10). Rows are the second
+/// axis, pages the third one.
 ///
 /// Spacing is that of ImageJ (in its unit) or OME-TIFF if the first page has their description. Otherwise it
 /// follows from the resolution: in mm if that has a unit, and the same along the third axis. A resolution of

@@ -7,9 +7,11 @@
 
 #include "common/files/file_names.h"
 #include "common/io/volumes/hdf5_volume.h"
+#include "common/io/volumes/headerless.h"
 #include "common/io/volumes/inr.h"
 #include "common/io/volumes/metaimage.h"
 #include "common/io/volumes/nifti.h"
+#include "common/io/volumes/npy.h"
 #include "common/io/volumes/nrrd.h"
 #include "common/io/volumes/tiff_stack.h"
 #include "common/io/volumes/zarr.h"
@@ -36,7 +38,7 @@ std::unique_ptr<VoxelSource> open_hdf5_path(const VolumePath& path, std::size_t 
   return open_hdf5_volume(path.file, path.inside, cache_bytes, use);
 }
 
-constexpr std::array<VolumeFormat, 15> formats_of_volumes{
+constexpr std::array<VolumeFormat, 17> formats_of_volumes{
     {{.extension = ".nrrd",
       .read = open_nrrd,
       .find = find_nrrd,
@@ -62,7 +64,18 @@ constexpr std::array<VolumeFormat, 15> formats_of_volumes{
      {.extension = ".tif", .open = open_tiff_path},
      {.extension = ".tiff", .open = open_tiff_path},
      {.extension = ".h5", .open = open_hdf5_path},
-     {.extension = ".hdf5", .open = open_hdf5_path}}};
+     {.extension = ".hdf5", .open = open_hdf5_path},
+     {.extension = ".npy", .read = open_npy, .find = find_npy},
+     {.extension = ".raw", .headerless = true}}};
+
+/// A volume in bytes that were read.
+EncodedVolume encoded_volume(const VolumeFormat& format, std::string_view bytes, const std::string& name,
+                             VoxelUse use, const VolumeFileOptions& options, const FileReader& others) {
+  EncodedVolume volume =
+      format.headerless ? encoded_headerless(bytes, name, options) : format.read(bytes, name, others, use);
+  if (options.spacing) set_spacing(volume.grid, *options.spacing);
+  return volume;
+}
 
 /// Whether a folder of the path is a zarr hierarchy by its name.
 bool is_in_zarr(const std::string& path) {
@@ -98,10 +111,18 @@ VolumePath volume_path(const std::string& path) {
 std::span<const VolumeFormat> volume_formats() { return formats_of_volumes; }
 
 std::unique_ptr<VoxelSource> open_by_boxes(const VolumeFormat& format, const std::string& path,
-                                           std::size_t cache_bytes, VoxelUse use) {
-  if (format.open) return format.open(volume_path(path), cache_bytes, use);
-  if (!format.find) return nullptr;
-  return find_raw_volume(format.header ? with_extension(path, format.header) : path, format.find, use);
+                                           std::size_t cache_bytes, VoxelUse use,
+                                           const VolumeFileOptions& options) {
+  std::unique_ptr<VoxelSource> source;
+  std::error_code error;
+  if (format.open)
+    source = format.open(volume_path(path), cache_bytes, use);
+  else if (format.headerless && std::filesystem::is_regular_file(path, error))
+    source = open_raw_volume(headerless_volume(path, FileRanges(path).size(), options));
+  else if (format.find)
+    source = find_raw_volume(format.header ? with_extension(path, format.header) : path, format.find, use);
+  if (source && options.spacing) source->set_spacing(*options.spacing);
+  return source;
 }
 
 std::int64_t layers_of(const VolumeFormat& format, const std::string& path) {
@@ -112,27 +133,41 @@ std::int64_t layers_of(const VolumeFormat& format, const std::string& path) {
   return format.layers({head.view(), file.size()}, path);
 }
 
-EncodedVolume volume_of_bytes(const VolumeFormat& format, std::string_view bytes, const std::string& name,
-                              VoxelUse use) {
-  const auto others = [&](const std::string& other) -> std::string {
-    throw InputError(name, 0, "its voxels are in another file, " + other + "; give the header's name");
-  };
-  return format.read(bytes, name, others, use);
+std::vector<LabelVolume> read_layers(const VolumeFormat& format, const std::string& path,
+                                     const VolumeFileOptions& options) {
+  std::vector<LabelVolume> layers;
+  if (format.read_layers)
+    layers = format.read_layers(read_whole_file(path), path, read_whole_file);
+  else
+    layers.push_back(read_whole_volume(format, path, {options.dimensions, options.voxel_type, {}}));
+  if (options.spacing)
+    for (LabelVolume& layer : layers) set_spacing(layer, *options.spacing);
+  return layers;
 }
 
-LabelVolume read_whole_volume(const VolumeFormat& format, const std::string& path) {
-  if (const auto source = open_by_boxes(format, path, whole_volume_cache)) return read_all(*source, path);
+EncodedVolume volume_of_bytes(const VolumeFormat& format, std::string_view bytes, const std::string& name,
+                              VoxelUse use, const VolumeFileOptions& options) {
+  return encoded_volume(format, bytes, name, use, options, [&](const std::string& other) -> std::string {
+    throw InputError(name, 0, "its voxels are in another file, " + other + "; give the header's name");
+  });
+}
+
+LabelVolume read_whole_volume(const VolumeFormat& format, const std::string& path,
+                              const VolumeFileOptions& options) {
+  if (const auto source = open_by_boxes(format, path, whole_volume_cache, VoxelUse::labels, options))
+    return read_all(*source, path);
   const std::string first = format.header ? with_extension(path, format.header) : path;
   const std::string bytes = read_whole_file(first);
-  return labels_of(format.read(bytes, first, read_whole_file, VoxelUse::labels));
+  return labels_of(encoded_volume(format, bytes, first, VoxelUse::labels, options, read_whole_file));
 }
 
-ImageVolume read_whole_image(const VolumeFormat& format, const std::string& path) {
-  if (const auto source = open_by_boxes(format, path, whole_volume_cache, VoxelUse::image))
+ImageVolume read_whole_image(const VolumeFormat& format, const std::string& path,
+                             const VolumeFileOptions& options) {
+  if (const auto source = open_by_boxes(format, path, whole_volume_cache, VoxelUse::image, options))
     return read_all_values(*source, path);
   const std::string first = format.header ? with_extension(path, format.header) : path;
   const std::string bytes = read_whole_file(first);
-  return image_of(format.read(bytes, first, read_whole_file, VoxelUse::image));
+  return image_of(encoded_volume(format, bytes, first, VoxelUse::image, options, read_whole_file));
 }
 
 }  // namespace tetwright

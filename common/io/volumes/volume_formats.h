@@ -11,6 +11,7 @@
 #include "common/io/volumes/encoded_volume.h"
 #include "common/io/volumes/raw_volume.h"
 #include "tetwright/files.h"
+#include "tetwright/io.h"
 #include "tetwright/label_source.h"
 
 namespace tetwright {
@@ -45,6 +46,7 @@ struct VolumeFormat {
                        Progress* progress) = nullptr;
   const char* header = nullptr;  ///< extension of the header file
   bool one_file = true;          ///< false: the voxels are in another file
+  bool headerless = false;       ///< true: VolumeFileOptions describe the voxels
 };
 
 std::span<const VolumeFormat> volume_formats();
@@ -52,7 +54,8 @@ std::span<const VolumeFormat> volume_formats();
 /// Opens a volume that is read by boxes.
 /// \return null if the file can only be read as a whole, since it is compressed or text
 std::unique_ptr<VoxelSource> open_by_boxes(const VolumeFormat& format, const std::string& path,
-                                           std::size_t cache_bytes, VoxelUse use = VoxelUse::labels);
+                                           std::size_t cache_bytes, VoxelUse use,
+                                           const VolumeFileOptions& options);
 
 /// Number of layers of overlapping segments; 1 for other files.
 std::int64_t layers_of(const VolumeFormat& format, const std::string& path);
@@ -60,12 +63,18 @@ std::int64_t layers_of(const VolumeFormat& format, const std::string& path);
 /// Opens a volume in a stream.
 /// \throws InputError if its voxels are in another file
 EncodedVolume volume_of_bytes(const VolumeFormat& format, std::string_view bytes, const std::string& name,
-                              VoxelUse use);
+                              VoxelUse use, const VolumeFileOptions& options);
+
+/// Reads all layers of overlapping segments.
+std::vector<LabelVolume> read_layers(const VolumeFormat& format, const std::string& path,
+                                     const VolumeFileOptions& options);
 
 /// Reads all labels, by boxes if possible.
-LabelVolume read_whole_volume(const VolumeFormat& format, const std::string& path);
+LabelVolume read_whole_volume(const VolumeFormat& format, const std::string& path,
+                              const VolumeFileOptions& options);
 
 /// Reads all values of an image, by boxes if possible.
-ImageVolume read_whole_image(const VolumeFormat& format, const std::string& path);
+ImageVolume read_whole_image(const VolumeFormat& format, const std::string& path,
+                             const VolumeFileOptions& options);
 
 }  // namespace tetwright

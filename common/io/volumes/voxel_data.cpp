@@ -32,6 +32,22 @@ std::string text(const std::array<int, 3>& size) {
   return std::to_string(size[0]) + " x " + std::to_string(size[1]) + " x " + std::to_string(size[2]);
 }
 
+/// A floating-point number of 16 bits (IEEE 754 binary16).
+struct Half {
+  std::uint16_t bits = 0;
+
+  explicit operator double() const {
+    const int exponent = bits >> 10 & 31, fraction = bits & 1023;
+    double value = 0;
+    if (exponent == 31)
+      value =
+          fraction == 0 ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+    else
+      value = std::ldexp(exponent == 0 ? fraction : 1024 + fraction, (exponent == 0 ? 1 : exponent) - 25);
+    return bits >> 15 ? -value : value;
+  }
+};
+
 /// Converts a number to a label, or to a value of an image.
 /// \return false if it is none
 bool to_value(double number, MaterialTag& label) {
@@ -52,7 +68,7 @@ template <class Stored, class Value>
 bool to_value(const char* from, const VoxelFormat& format, bool scaled, Value& value) {
   const auto stored = load<Stored>(from, format.swap);
   if (scaled) return to_value(format.slope * static_cast<double>(stored) + format.intercept, value);
-  if constexpr (std::is_floating_point_v<Stored>) {
+  if constexpr (!std::is_integral_v<Stored>) {
     return to_value(static_cast<double>(stored), value);
   } else {
     // NOLINTNEXTLINE(bugprone-signed-char-misuse): an int8 is a number here, not a character.
@@ -165,6 +181,8 @@ auto with_type(VoxelType type, const Call& call) {
       return call(std::int64_t{});
     case VoxelType::uint64:
       return call(std::uint64_t{});
+    case VoxelType::float16:
+      return call(Half{});
     case VoxelType::float32:
       return call(float{});
     default:
@@ -179,7 +197,7 @@ std::string bad_value(const VoxelName& name, const std::string& value, double nu
               ? ", which is not a 32-bit label; number the labels from 0"
               : ", not a whole number; a volume of labels is needed; mesh an image with --iso");
 }
-/// Likewise, with the reason why the value is not one of an image.
+/// Message with the reason why the value is not one of an image.
 std::string bad_value(const VoxelName& name, const std::string& value, double number, float /*kind*/) {
   return name_text(name) + " has the value " + value +
          (std::isfinite(number) ? ", beyond the range of 32-bit floats; scale the values of the image"
@@ -237,15 +255,40 @@ std::string bad_voxel(const VoxelName& name, const char* from, const VoxelFormat
     const auto stored = load<Stored>(from, format.swap);
     const double scaled = format.slope * static_cast<double>(stored) + format.intercept;
     std::string value;
-    if (format.slope != 1 || format.intercept != 0 || !std::is_integral_v<Stored>)
-      append_number(value, scaled);
+    if constexpr (std::is_integral_v<Stored>)
+      format.slope == 1 && format.intercept == 0 ? append_number(value, stored)
+                                                 : append_number(value, scaled);
     else
-      append_number(value, stored);
+      append_number(value, scaled);
     return bad_value(name, value, scaled, Value{});
   });
 }
 template std::string bad_voxel<MaterialTag>(const VoxelName&, const char*, const VoxelFormat&);
 template std::string bad_voxel<float>(const VoxelName&, const char*, const VoxelFormat&);
+
+std::optional<VoxelFormat> format_of_typestr(std::string_view typestr) {
+  constexpr std::array<std::pair<std::string_view, VoxelType>, 12> types{{{"b1", VoxelType::uint8},
+                                                                          {"i1", VoxelType::int8},
+                                                                          {"u1", VoxelType::uint8},
+                                                                          {"i2", VoxelType::int16},
+                                                                          {"u2", VoxelType::uint16},
+                                                                          {"i4", VoxelType::int32},
+                                                                          {"u4", VoxelType::uint32},
+                                                                          {"i8", VoxelType::int64},
+                                                                          {"u8", VoxelType::uint64},
+                                                                          {"f2", VoxelType::float16},
+                                                                          {"f4", VoxelType::float32},
+                                                                          {"f8", VoxelType::float64}}};
+  const bool ordered = typestr.starts_with('<') || typestr.starts_with('>');
+  for (const auto& [name, type] : types)
+    if (typestr.size() == 3 && typestr.substr(1) == name && (ordered || voxel_bytes(type) == 1)) {
+      VoxelFormat format;
+      format.type = type;
+      format.swap = voxel_bytes(type) > 1 && typestr.starts_with('<') != little_endian_machine;
+      return format;
+    }
+  return std::nullopt;
+}
 
 std::array<int, 3> checked_size(std::span<const std::int64_t> sizes, const std::string& file,
                                 std::size_t line, std::int64_t max_voxels) {

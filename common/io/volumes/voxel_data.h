@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -27,7 +28,7 @@ std::string name_of_use(VoxelUse use);
 /// End of a message on numbers that cannot be read: `labels`, the advice on labels, or that on images.
 std::string numbers_to_save(VoxelUse use, const std::string& labels);
 
-enum class VoxelType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+enum class VoxelType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float16, float32, float64 };
 
 std::size_t voxel_bytes(VoxelType type);
 
@@ -78,6 +79,10 @@ std::uint64_t voxel_data_bytes(const std::array<int, 3>& size, VoxelType type, s
 std::string needed_bytes(const std::array<int, 3>& size, VoxelType type, std::int64_t channels = 1);
 
 // `Value` is MaterialTag for labels, and float for images.
+
+/// Type that a typestr of NumPy names, such as "<u2" or "|b1"; std::nullopt if it is not one of numbers, or
+/// has no byte order although it has several bytes.
+std::optional<VoxelFormat> format_of_typestr(std::string_view typestr);
 
 /// Converts `n` numbers that are `step` bytes apart.
 /// \return the index of the first number that is not a label, or not a value of an image, or `n`

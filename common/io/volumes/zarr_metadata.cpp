@@ -112,33 +112,14 @@ void take_fill(const json& value, ZarrArray& array) {
 
 /// Type of items "<u2" (NumPy's typestr).
 VoxelFormat typestr_format(const ZarrJson& array) {
-  constexpr std::array<std::pair<std::string_view, VoxelType>, 11> types{{{"b1", VoxelType::uint8},
-                                                                          {"i1", VoxelType::int8},
-                                                                          {"u1", VoxelType::uint8},
-                                                                          {"i2", VoxelType::int16},
-                                                                          {"u2", VoxelType::uint16},
-                                                                          {"i4", VoxelType::int32},
-                                                                          {"u4", VoxelType::uint32},
-                                                                          {"i8", VoxelType::int64},
-                                                                          {"u8", VoxelType::uint64},
-                                                                          {"f4", VoxelType::float32},
-                                                                          {"f8", VoxelType::float64}}};
-  const std::string type = array.text("dtype");
-  const bool ordered = type.starts_with('<') || type.starts_with('>');
-  for (const auto& [name, value] : types)
-    if (type.size() == 3 && type.substr(1) == name && (ordered || voxel_bytes(value) == 1)) {
-      VoxelFormat format;
-      format.type = value;
-      format.swap = voxel_bytes(value) > 1 && type.starts_with('<') != little_endian_machine;
-      return format;
-    }
+  if (const std::optional<VoxelFormat> format = format_of_typestr(array.text("dtype"))) return *format;
   array.fail("items of type " + in_quotes(value_text(array.member("dtype"))) +
              " are not supported; store the labels as integers");
 }
 
 /// Type of items "uint16".
 VoxelType named_type(const ZarrJson& array) {
-  constexpr std::array<std::pair<std::string_view, VoxelType>, 11> types{{{"bool", VoxelType::uint8},
+  constexpr std::array<std::pair<std::string_view, VoxelType>, 12> types{{{"bool", VoxelType::uint8},
                                                                           {"int8", VoxelType::int8},
                                                                           {"uint8", VoxelType::uint8},
                                                                           {"int16", VoxelType::int16},
@@ -147,6 +128,7 @@ VoxelType named_type(const ZarrJson& array) {
                                                                           {"uint32", VoxelType::uint32},
                                                                           {"int64", VoxelType::int64},
                                                                           {"uint64", VoxelType::uint64},
+                                                                          {"float16", VoxelType::float16},
                                                                           {"float32", VoxelType::float32},
                                                                           {"float64", VoxelType::float64}}};
   const std::string type = array.text("data_type");

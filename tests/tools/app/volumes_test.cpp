@@ -193,6 +193,44 @@ TEST_F(Volumes, WhatIsNoLabel) {
   expect_refused(path("scan.nrrd"), 3, {"scan.nrrd", "voxel (1, 0, 1)", "2.5", "not a whole number"});
 }
 
+TEST_F(Volumes, SpacingAndRawFilesFromOptions) {
+  // A cube of 6 x 6 x 6 voxels in the middle of 10 x 10 x 10, as integers of 16 bits in big-endian order.
+  std::string voxels;
+  for (int z = 0; z < 10; ++z)
+    for (int y = 0; y < 10; ++y)
+      for (int x = 0; x < 10; ++x) {
+        const auto inside = [](int k) { return k >= 2 && k < 8; };
+        voxels += std::string(1, '\0') + (inside(x) && inside(y) && inside(z) ? '\3' : '\0');
+      }
+  put(path("cube.raw"), voxels);
+  const std::string raw = path("cube.raw") + " --dimensions 10x10x10 --voxel-type uint16be --accept-changes";
+  Answer a = run(mesh(raw + " --spacing 0.5,1,2"));
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_EQ(a.err.find("spacing"), std::string::npos) << a.err;
+  const Vec3 size = [&] {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& p : read_tet_mesh(path("out.vtu")).mesh.points) box.extend(p);
+    return Vec3(box.sizes());
+  }();
+  EXPECT_LT((size - Vec3(3, 6, 12)).cwiseQuotient(Vec3(0.5, 1, 2)).cwiseAbs().maxCoeff(), 1) << size;
+  a = run(mesh(raw));
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_NE(a.err.find("1 volume whose file gives no spacing"), std::string::npos) << a.err;
+  a = run(mesh(path("organs.nrrd") + coarse + " --spacing 2"));
+  EXPECT_NE(a.err.find("1 volume whose file gives another spacing (that of --spacing is used)"),
+            std::string::npos)
+      << a.err;
+  expect_refused(path("cube.raw"), 2, {"cube.raw", "--dimensions NX,NY,NZ and --voxel-type"});
+  expect_refused(path("cube.raw") + " --dimensions 10,10,11 --voxel-type uint16", 3,
+                 {"10 x 10 x 11 voxels of 2 bytes need 2200 bytes, but the file has 2000"});
+  expect_refused(path("cube.raw") + " --dimensions 10,10 --voxel-type uint16", 2,
+                 {"--dimensions", "NX,NY,NZ"});
+  expect_refused(path("cube.raw") + " --dimensions 10,10,10 --voxel-type int24", 2,
+                 {"--voxel-type", "int24"});
+  expect_refused(path("organs.nrrd") + " --dimensions 10,10,10", 2, {"--dimensions", "no input is one"});
+  expect_refused(path("organs.nrrd") + " --spacing 0", 2, {"--spacing", "'0'"});
+}
+
 TEST_F(Volumes, HeadersWithoutSense) {
   write_small("flat.nrrd", "uchar",
               cube + "space: left-posterior-superior\nspace directions: (1,0,0) (0,1,0) (1,1,0)\n",

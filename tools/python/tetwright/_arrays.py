@@ -57,6 +57,22 @@ def whole_numbers(values: Any, name: str, what: str) -> np.ndarray:
     return array.astype(np.int32)
 
 
+def holds_whole_numbers(array: np.ndarray) -> bool:
+    """Returns whether an array is one of labels: its type is that of whole numbers, or its floats are labels all the
+    same."""
+    if array.dtype.kind != "f":
+        return True
+    limits = np.iinfo(np.int32)
+    with np.errstate(invalid="ignore"):
+        return bool(((array >= limits.min) & (array <= limits.max) & (np.floor(array) == array)).all())
+
+
+def image_values(values: Any, name: str) -> np.ndarray:
+    """Returns the values of an image as floats of 32 bits; those beyond their range become infinite."""
+    with np.errstate(over="ignore"):
+        return numbers(values, name, "values of the image", "biuf").astype(np.float32)
+
+
 def check_range(cells: np.ndarray, points: int, name: str, what: str) -> None:
     """Rejects cells that refer to a point which does not exist."""
     bad = (cells < 0) | (cells >= points)

@@ -24,12 +24,12 @@ def prepare(scan: Any, *, target_tets: Optional[int] = None, tolerance: Union[fl
 
     scan -- a surface, a list of surfaces, or a dict from names of materials to surfaces (names are kept unchanged;
         later surfaces carve earlier ones); or one array of labels of shape (nx, ny, nz), whole numbers, where 0 is
-        outside
+        outside; other floats, and arrays of shape (nx, ny, nz, channels), are images
     target_tets -- target number of tets; without it `tolerance` or `size_field` is required
     size_field -- edge lengths by location: a file, arrays (points (n, 3), tets (m, 4) or triangles (m, 3), lengths
         (n,)), or a mesh of meshio or pyvista whose points have them as "size"
     tolerance -- maximum distance between the surfaces of mesh and scan, in input units or "0.2%" of the diagonal
-    spacing, origin -- for an array of labels: distance between voxels, in input units (one number or three), and the
+    spacing, origin -- for an array of voxels (and spacing alone for a volume in a file): distance between voxels, in input units (one number or three), and the
         centre of voxel (0, 0, 0); alternatively affine, a (4, 4) matrix that maps indices to positions
     progress -- a function of (stage, fraction from 0 to 1), called from this thread; True shows a bar, using tqdm if
         it is installed
@@ -101,6 +101,8 @@ def read(path: Union[str, os.PathLike], *, material_field: str = "") -> TetMesh:
 
 
 def _run(command: str, inputs: Inputs, names: list[bytes], options: dict[str, Any], progress: Progress) -> TetMesh:
+    if (spacing := inputs.spacing_of_files()) is not None:
+        options["spacing"] = spacing
     arguments = arguments_of(command, names, options, inputs)
     inputs.finish()
     with _shown(progress) as callback:

@@ -8,7 +8,7 @@ from typing import Any, Iterable, Optional
 import numpy as np
 
 from . import _core
-from ._arrays import indices, numbers, whole_numbers
+from ._arrays import holds_whole_numbers, image_values, indices, numbers, whole_numbers
 from ._cells import Cells, cells_of, field_items, note_large_integers, size_field
 from ._mesh import TetMesh
 from ._text import file_name, plain_text
@@ -48,7 +48,7 @@ class Inputs:
         self._objects.add(key)
         if isinstance(value, TetMesh):
             self.core.add_own_mesh(key, value._core)
-        elif isinstance(value, np.ndarray) and value.ndim == 3:
+        elif isinstance(value, np.ndarray) and value.ndim in (3, 4):
             self._add_volume(key, name, value, None)
         elif hasattr(value, "affine") and hasattr(value, "dataobj"):  # nibabel
             self._add_volume(key, name, np.asanyarray(value.dataobj), value.affine)
@@ -78,10 +78,18 @@ class Inputs:
         self.core.add_sizes(name.encode(), points, cells, lengths)
         return name.encode()
 
+    def spacing_of_files(self) -> Any:
+        """Returns the spacing if it is that of a volume in a file, as there is no array of voxels; else None."""
+        spacing, origin, affine = self._placement
+        if self._placement_used or not self._files or origin is not None or affine is not None:
+            return None
+        self._placement_used = spacing is not None
+        return spacing
+
     def finish(self) -> None:
         """Rejects positions of voxels if there are no voxels, and files that have the name of an array."""
         if any(p is not None for p in self._placement) and not self._placement_used:
-            raise _core.UsageError("spacing, origin and affine are for arrays of labels, and no input is one")
+            raise _core.UsageError("spacing, origin and affine are for arrays of voxels, and no input is one")
         for name in sorted(self._files & self._objects):
             raise _core.UsageError(f"'{os.fsdecode(name)}' is the name of a file and of an array; call the array "
                                    "something else")
@@ -111,7 +119,7 @@ class Inputs:
         self.core.add_mesh(key, cells.points, cells.tets, tags, cells.names, field_items(cells.point_fields),
                            field_items(cells.cell_fields), cells.dropped, cells.grouped_triangles())
 
-    def _add_volume(self, key: bytes, name: str, labels: np.ndarray, own_affine: Optional[np.ndarray]) -> None:
+    def _add_volume(self, key: bytes, name: str, voxels: np.ndarray, own_affine: Optional[np.ndarray]) -> None:
         spacing, origin, affine = self._placement
         self._placement_used = True
         if affine is not None and (spacing is not None or origin is not None):
@@ -124,10 +132,13 @@ class Inputs:
         else:
             matrix[:3, :3] = np.diag(_three("spacing", 1 if spacing is None else spacing))
             matrix[:3, 3] = _three("origin", 0 if origin is None else origin)
-        if labels.ndim == 4 and labels.shape[3] == 1:
-            labels = labels[..., 0]
-        self.core.add_volume(key, whole_numbers(labels, name, "labels"), matrix[:3, 3].tolist(),
-                             matrix[:3, :3].tolist())
+        if voxels.ndim == 4 and voxels.shape[3] == 1:
+            voxels = voxels[..., 0]
+        if voxels.ndim == 3 and holds_whole_numbers(voxels):
+            add, voxels = self.core.add_volume, whole_numbers(voxels, name, "labels")
+        else:
+            add, voxels = self.core.add_image, image_values(voxels, name)
+        add(key, voxels, matrix[:3, 3].tolist(), matrix[:3, :3].tolist())
 
 
 def _placed(option: str, value: Any) -> np.ndarray:

@@ -63,6 +63,8 @@ def _texts(key: str, kind: str, value: Any, inputs: Inputs) -> Iterable[bytes]:
         return [_name(key, str(name)) + b"=" + _number(key, item) for name, item in value.items()]
     if key == "labels" and not isinstance(value, str):
         return [_label_ranges(value)]
+    if key in ("spacing", "dimensions") and not isinstance(value, str):
+        return [b",".join(_number(key, item) for item in (value if np.ndim(value) == 1 else [value]))]
     if key == "layer" and not isinstance(value, (str, list)):
         raise _core.UsageError(f"layer is a {type(value).__name__}; give a dict from names to thicknesses")
     if key in ("layer", "region", "cap", "surface") and isinstance(value, list):

@@ -220,7 +220,7 @@ enum class FileKind {
   surface,   ///< .ply .obj .stl .off .vtp; read only: .3mf .glb
   tet_mesh,  ///< see tet_format_table()
   /// .nrrd; read only: .nhdr .mhd .mha .nii .nii.gz .hdr .img .inr .inr.gz, .zarr .tif .tiff .h5 .hdf5, and
-  /// folders with zarr arrays or TIFF files
+  /// .npy, .raw, folders with zarr arrays or TIFF files, and patterns of TIFF files ("slice_*.tif")
   volume,
   unknown
 };
@@ -287,6 +287,21 @@ std::string point_field_extensions();
 /// File name without folders and extension; .nii.gz and .inr.gz count as one extension.
 std::string file_stem(const std::string& path);
 
+/// Facts that files of volumes do not give, or that replace those of the file.
+struct VolumeFileOptions {
+  /// Voxels along each axis of a .raw file, the axis that varies fastest first. Such files have voxels alone.
+  std::optional<std::array<int, 3>> dimensions = {};
+  /// Type of the voxels of a .raw file: int8, uint8, int16, uint16, int32, uint32, int64, uint64, float16,
+  /// float32 or float64, with le or be for the byte order ("uint16be"); little-endian without.
+  std::string voxel_type = {};
+  /// Distance between voxels along each axis, input units; replaces that of the file.
+  std::optional<Vec3> spacing = {};
+};
+
+/// Checks the options before files are read.
+/// \throws UsageError if a size is below 1, the type unknown, or a spacing not above 0
+void check_volume_options(const VolumeFileOptions& options);
+
 /// Reads a file. A .node and an .ele file with the same name in one folder are a pair; `path` may name
 /// either. The header of a volume may refer to another file with the voxels.
 /// \param dropped receives the contents of a surface file other than points and faces; may be null. A tet
@@ -296,7 +311,7 @@ std::string file_stem(const std::string& path);
 ///   small (require_measurable())
 TriangleMesh read_surface(const std::string& path, std::vector<Dropped>* dropped = nullptr);
 ReadTetMesh read_tet_mesh(const std::string& path, const ReadTetMeshOptions& options = {});
-LabelVolume read_label_volume(const std::string& path);
+LabelVolume read_label_volume(const std::string& path, const VolumeFileOptions& options = {});
 /// Reads the values of an image: gray values, distances or probabilities, in all formats of volumes. NIfTI's
 /// slope and intercept are applied. The values are rounded to 32-bit floats.
 ///
@@ -306,7 +321,7 @@ LabelVolume read_label_volume(const std::string& path);
 /// \throws InputError also at the first value that is not finite, and if the file is a segmentation whose
 ///   segments overlap
 /// \throws OutputError if the values, 4 bytes for each voxel and channel, exceed available_memory()
-ImageVolume read_image(const std::string& path);
+ImageVolume read_image(const std::string& path, const VolumeFileOptions& options = {});
 
 /// Number of layers of a segmentation whose segments overlap (.seg.nrrd of 3D Slicer), from its header; 1 for
 /// other volumes.
@@ -315,17 +330,19 @@ ImageVolume read_image(const std::string& path);
 std::int64_t label_layers(const std::string& path);
 /// Reads all layers of a segmentation. Each has the names and colours of its segments. Exceptions as for
 /// read_label_volume().
-std::vector<LabelVolume> read_label_layers(const std::string& path);
+std::vector<LabelVolume> read_label_layers(const std::string& path, const VolumeFileOptions& options = {});
 
 struct LabelSourceOptions {
   /// Decoded chunks that the source keeps, bytes. Each concurrent call of LabelSource::read() takes the
   /// memory of a chunk beside them, encoded and decoded.
   std::size_t cache_bytes = std::size_t{1} << 28;
+  VolumeFileOptions file = {};
 };
 
 /// Opens a segmented volume to read its labels box by box.
 ///
-/// - Uncompressed .nrrd, .nhdr, .mhd, .mha, .nii, .hdr and .img files are read by ranges of bytes.
+/// - Uncompressed .nrrd, .nhdr, .mhd, .mha, .nii, .hdr and .img files, .npy and .raw are read by ranges of
+///   bytes.
 /// - `.zarr` folders (zarr 2 and 3, OME-Zarr), `FOLDER.zarr/ARRAY` and other folders with the metadata of
 /// zarr
 ///   are decoded by chunks, `.h5` and `.hdf5` files, `FILE.h5:/DATASET`, too.
@@ -349,8 +366,9 @@ TriangleMesh read_surface_bytes(std::string_view bytes, const std::string& name,
 ReadTetMesh read_tet_mesh_bytes(std::string_view bytes, const std::string& name, const std::string& extension,
                                 const ReadTetMeshOptions& options = {});
 LabelVolume read_label_volume_bytes(std::string_view bytes, const std::string& name,
-                                    const std::string& extension);
-ImageVolume read_image_bytes(std::string_view bytes, const std::string& name, const std::string& extension);
+                                    const std::string& extension, const VolumeFileOptions& options = {});
+ImageVolume read_image_bytes(std::string_view bytes, const std::string& name, const std::string& extension,
+                             const VolumeFileOptions& options = {});
 
 /// Extensions that can be read from streams, such as ".ply .obj", and whether `extension` is one of them.
 std::string streamed_extensions();

@@ -140,6 +140,20 @@ TEST_F(TiffStacks, LargePagesAreReadByGroupsOfStrips) {
   expect_labels(*source, volume);
 }
 
+TEST_F(TiffStacks, PatternsOfNames) {
+  const LabelVolume volume = numbered_volume({4, 3, 12});
+  std::filesystem::create_directory(path("slices"));
+  for (int z = 0; z < 12; ++z)
+    write_stack<std::uint8_t>(path("slices/slice_" + std::to_string(z) + ".tif"), slice_of(volume, z));
+  write_stack<std::uint8_t>(path("slices/overview.tif"), numbered_volume({9, 9, 1}));
+  put(path("slices/slice_a.txt"), "no slice");
+  EXPECT_EQ(file_kind(path("slices/slice_*.tif")), FileKind::volume);
+  EXPECT_EQ(read_label_volume(path("slices/slice_*.tif")).labels, volume.labels);
+  EXPECT_EQ(read_label_volume(path("slices/s*_1?.tif")).size, (VoxelIndex{4, 3, 2}));
+  EXPECT_EQ(error_of<InputError>([&] { (void)read_label_volume(path("slices/page_*.tif")); }),
+            path("slices/page_*.tif") + ": no .tif file has such a name");
+}
+
 TEST_F(TiffStacks, FoldersInNaturalOrder) {
   const LabelVolume volume = numbered_volume(size);
   std::filesystem::create_directory(path("slices"));

@@ -16,6 +16,7 @@
 
 #include "tetwright/compare.h"
 #include "tetwright/diagnostic.h"
+#include "tetwright/image_volume.h"
 #include "tetwright/io.h"
 #include "tetwright/image_input.h"
 #include "tetwright/label_volume.h"
@@ -101,12 +102,16 @@ struct Input {
   Value value = InputFile{};
   std::string material;  ///< or the name of a sheet; empty: the name of the input
   bool mask = false;     ///< a volume with one material, see LabelMasks; several volumes always are
+  VolumeFileOptions volume_file = {};  ///< of a volume in a file; prepare() sets PrepareOptions::volume_file
   enum class Role : std::uint8_t { body, sheet, partition };
   Role role = Role::body;
 };
 
 /// Reads or moves out the value of an input; files are read by the readers of io.h. Volumes in files are read
 /// only when their source is.
+///
+/// Volumes in memory are labels as well as images if their values allow it: take_label_volume() takes an
+/// image of one channel and whole numbers, take_image() labels.
 ///
 /// \param dropped receives the contents that were not kept; may be null
 /// \param waited time spent waiting for a stream, seconds; added to the previous value
@@ -303,6 +308,7 @@ struct PrepareOptions {
   BodyOptions bodies;
   LabelOptions labels;
   ImageOptions images;
+  VolumeFileOptions volume_file;  ///< spacing of volumes, and contents of .raw files
   BrickOptions bricks;
   FeatureAngle feature_angle;  ///< determines which edges stay sharp
   TargetOptions target;
