@@ -77,6 +77,24 @@ def test_several_arrays_are_masks():
         tetwright.mesh(masks, on_overlap="error")
 
 
+def test_images():
+    axis = np.arange(20) - 9.5
+    x, y, z = np.meshgrid(axis, axis, axis, indexing="ij")
+    inside = 7 - np.sqrt(x * x + y * y + z * z)  # distance, positive inside
+    mesh = tetwright.mesh(inside, iso={"core": 4, "shell": 0}, voxel_size=0.5)
+    volumes = {m["name"]: m["volume"] for m in mesh.stats["result"]["materials"]}
+    ball = lambda r: 4 / 3 * np.pi * r**3
+    assert abs(volumes["core"] - ball(3)) < 0.05 * ball(3)
+    assert abs(volumes["shell"] - (ball(7) - ball(3))) < 0.02 * ball(7)
+    assert len(tetwright.mesh(inside, iso="auto").tets) > 0
+    maps = np.stack([1 / (1 + np.exp(-inside - 3)), np.zeros_like(inside)], axis=3)
+    assert len(tetwright.mesh(maps, outside_probability=0.5, smooth=0.5).tets) > 0
+    with pytest.raises(tetwright.InputError, match="--iso"):
+        tetwright.mesh(inside)
+    with pytest.raises(tetwright.Error, match="from"):
+        tetwright.mesh(inside, iso=50)
+
+
 def test_labels_give_the_bytes_of_the_program(tmp_path):
     labels = labels_of_two_balls()
     with open(tmp_path / "v.nrrd", "wb") as file:

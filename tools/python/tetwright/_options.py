@@ -61,6 +61,10 @@ def _texts(key: str, kind: str, value: Any, inputs: Inputs) -> Iterable[bytes]:
                 for name, item in materials_of(value, key)]
     if key == "layer" and isinstance(value, dict):
         return [_name(key, str(name)) + b"=" + _number(key, item) for name, item in value.items()]
+    if key == "iso" and isinstance(value, dict):
+        return [_name(key, str(name)) + b"=" + _number(key, item) for name, item in value.items()]
+    if key in ("iso", "outside_probability", "smooth"):
+        return [_number(key, item) for item in (value if isinstance(value, list) else [value])]
     if key == "labels" and not isinstance(value, str):
         return [_label_ranges(value)]
     if key in ("spacing", "dimensions") and not isinstance(value, str):
