@@ -172,12 +172,17 @@ SizesObject to_sizes(const std::string& name, const Points& points, const Cells&
   return sizes;
 }
 
-LabelVolume to_volume(const std::string& name, const Labels& labels, const std::array<double, 3>& origin,
-                      const std::array<std::array<double, 3>, 3>& directions) {
+namespace {
+
+/// Sets the grid of an array of voxels.
+/// \param what "labels are" or "values are"
+void set_grid(const std::string& name, const char* what, const py::array& labels,
+              const std::array<double, 3>& origin, const std::array<std::array<double, 3>, 3>& directions,
+              LabelGrid& volume) {
   if (labels.ndim() != 3 || labels.size() == 0)
-    throw InputError(name, 0,
-                     "labels are an array of shape " + shape_text(labels) + "; give one of three axes");
-  LabelVolume volume;
+    throw InputError(
+        name, 0,
+        std::string(what) + " an array of shape " + shape_text(labels) + "; give one of three axes");
   for (std::size_t a = 0; a < 3; ++a) {
     const py::ssize_t count = labels.shape(static_cast<py::ssize_t>(a));
     if (count > std::numeric_limits<int>::max())
@@ -194,8 +199,24 @@ LabelVolume to_volume(const std::string& name, const Labels& labels, const std::
         name, 0,
         "its origin and steps between voxels are not finite or lie in a plane; give a spacing above 0, "
         "or an affine that can be inverted");
+}
+
+}  // namespace
+
+LabelVolume to_volume(const std::string& name, const Labels& labels, const std::array<double, 3>& origin,
+                      const std::array<std::array<double, 3>, 3>& directions) {
+  LabelVolume volume;
+  set_grid(name, "labels are", labels, origin, directions, volume);
   volume.labels.assign(labels.data(), labels.data() + labels.size());
   return volume;
+}
+
+ImageVolume to_image(const std::string& name, const Image& values, const std::array<double, 3>& origin,
+                     const std::array<std::array<double, 3>, 3>& directions) {
+  ImageVolume image;
+  set_grid(name, "values are", values, origin, directions, image);
+  image.channels.emplace_back(values.data(), values.data() + values.size());
+  return image;
 }
 
 }  // namespace tetwright::python

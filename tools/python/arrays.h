@@ -11,6 +11,7 @@
 #include <tuple>
 #include <vector>
 
+#include "tetwright/image_volume.h"
 #include "tetwright/io.h"
 #include "tetwright/label_volume.h"
 #include "tetwright/surface_mesh.h"
@@ -27,6 +28,7 @@ using Cells = py::array_t<std::int64_t, py::array::c_style | py::array::forcecas
 using Tags = py::array_t<MaterialTag, py::array::c_style | py::array::forcecast>;
 using Values = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Labels = py::array_t<MaterialTag, py::array::f_style | py::array::forcecast>;
+using Image = py::array_t<float, py::array::f_style | py::array::forcecast>;
 /// Name, whether the values are integers, and the values.
 using Fields = std::vector<std::tuple<std::string, bool, Values>>;
 /// Kind of the items (plural), number, and whether they are restored from other data.
@@ -54,5 +56,8 @@ SizesObject to_sizes(const std::string& name, const Points& points, const Cells&
 /// Labels of shape (i, j, k); column a of `directions` is one voxel step along axis a.
 LabelVolume to_volume(const std::string& name, const Labels& labels, const std::array<double, 3>& origin,
                       const std::array<std::array<double, 3>, 3>& directions);
+/// An image of one channel, likewise.
+ImageVolume to_image(const std::string& name, const Image& values, const std::array<double, 3>& origin,
+                     const std::array<std::array<double, 3>, 3>& directions);
 
 }  // namespace tetwright::python

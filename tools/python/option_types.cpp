@@ -13,6 +13,7 @@ std::map<std::string, std::string> option_types(const std::string& command) {
                                                                           {"mesh", add_mesh},
                                                                           {"simplify", add_simplify},
                                                                           {"improve", add_improve},
+                                                                          {"values", add_values},
                                                                           {"check", add_check}};
   std::map<std::string, std::string> types;
   const auto add_options = commands.find(command);
