@@ -6,6 +6,7 @@
 #include <mutex>
 #include <utility>
 
+#include "common/whole_volume.h"
 #include "tetwright/error.h"
 #include "tetwright/resources.h"
 
@@ -124,43 +125,63 @@ void LabelBoxes::for_each(
   error.rethrow();
 }
 
-LabelVolume read_all(const LabelSource& source, const std::string& file) {
+template <class Value>
+std::vector<std::vector<Value>> read_whole(const LabelSource& source, std::size_t arrays,
+                                           const std::string& file, const std::string& what,
+                                           const BoxReader<Value>& read) {
   const LabelGrid& grid = source.grid();
-  if (grid.voxels() > static_cast<std::uint64_t>(max_volume_voxels))
+  if (grid.voxels() > static_cast<std::uint64_t>(max_volume_voxels) / arrays)
     throw InputError(file, 0,
                      "its " + std::to_string(grid.size[0]) + " x " + std::to_string(grid.size[1]) + " x " +
-                         std::to_string(grid.size[2]) + " voxels are more than " +
-                         std::to_string(max_volume_voxels) + "; crop the volume or make it coarser");
-  const double label_bytes = static_cast<double>(grid.voxels()) * sizeof(MaterialTag);
-  require_memory(label_bytes, "the labels of " + file, "crop the volume or make it coarser");
+                         std::to_string(grid.size[2]) + " voxels" +
+                         (arrays > 1 ? " of " + std::to_string(arrays) + " channels" : "") +
+                         " are more than " + std::to_string(max_volume_voxels) +
+                         "; crop the volume or make it coarser");
+  const double all_bytes =
+      static_cast<double>(grid.voxels()) * static_cast<double>(arrays) * static_cast<double>(sizeof(Value));
+  require_memory(all_bytes, "the " + what + " of " + file, "crop the volume or make it coarser");
   const LabelBoxes boxes(source, voxels_at_once);
   // Boxes that contain whole slices are contiguous in the result.
   const bool slices = boxes.of_whole_slices();
   auto worker_bytes = static_cast<double>(source.decoding_bytes());
-  if (!slices) worker_bytes += static_cast<double>(boxes.voxels()) * sizeof(MaterialTag);
+  if (!slices) worker_bytes += static_cast<double>(boxes.voxels()) * sizeof(Value);
   const std::size_t workers = boxes.workers(grid.size[2]);
-  require_memory(label_bytes + static_cast<double>(workers) * worker_bytes,
-                 "the labels of " + file + " and the blocks that " + std::to_string(workers) +
+  require_memory(all_bytes + static_cast<double>(workers) * worker_bytes,
+                 "the " + what + " of " + file + " and the blocks that " + std::to_string(workers) +
                      " threads decode at a time",
                  "use fewer threads, or store it in smaller chunks");
-  LabelVolume volume;
-  static_cast<LabelGrid&>(volume) = grid;
-  volume.labels.resize(grid.voxels());
+  std::vector<std::vector<Value>> out(arrays);
+  for (std::vector<Value>& values : out) values.resize(grid.voxels());
   boxes.for_each(0, grid.size[2], [&](const VoxelIndex& low, const VoxelIndex& high, unsigned /*worker*/) {
     const std::size_t n = label_count(low, high);
-    if (slices) {
-      source.read(low, high, std::span(volume.labels).subspan(label_index(grid.size, 0, 0, low[2]), n));
-      return;
+    std::vector<Value> box(slices ? 0 : n);
+    for (std::size_t array = 0; array < arrays; ++array) {
+      if (slices) {
+        read(low, high, array, std::span(out[array]).subspan(label_index(grid.size, 0, 0, low[2]), n));
+        continue;
+      }
+      read(low, high, array, box);
+      auto from = box.begin();
+      for (int z = low[2]; z < high[2]; ++z)
+        for (int y = low[1]; y < high[1]; ++y, from += high[0] - low[0])
+          std::copy_n(from, high[0] - low[0],
+                      out[array].begin() + static_cast<std::ptrdiff_t>(label_index(grid.size, low[0], y, z)));
     }
-    std::vector<MaterialTag> labels(n);
-    source.read(low, high, labels);
-    auto from = labels.begin();
-    for (int z = low[2]; z < high[2]; ++z)
-      for (int y = low[1]; y < high[1]; ++y, from += high[0] - low[0])
-        std::copy_n(
-            from, high[0] - low[0],
-            volume.labels.begin() + static_cast<std::ptrdiff_t>(label_index(grid.size, low[0], y, z)));
   });
+  return out;
+}
+template std::vector<std::vector<MaterialTag>> read_whole(const LabelSource&, std::size_t, const std::string&,
+                                                          const std::string&, const BoxReader<MaterialTag>&);
+template std::vector<std::vector<float>> read_whole(const LabelSource&, std::size_t, const std::string&,
+                                                    const std::string&, const BoxReader<float>&);
+
+LabelVolume read_all(const LabelSource& source, const std::string& file) {
+  LabelVolume volume{source.grid(), {}};
+  volume.labels = std::move(
+      read_whole<MaterialTag>(source, 1, file, "labels",
+                              [&](const VoxelIndex& low, const VoxelIndex& high, std::size_t /*array*/,
+                                  std::span<MaterialTag> out) { source.read(low, high, out); })
+          .front());
   return volume;
 }
 

@@ -210,6 +210,10 @@ ReadTetMesh measurable(ReadTetMesh read, const std::string& name) {
   return read;
 }
 
+const VolumeFormat& streamed_volume_format(const std::string& name, const std::string& extension) {
+  return streamed(need_format(volume_formats(), name + extension, FileKind::volume, FileUse::read), name);
+}
+
 NameRules names_of_groups(const SurfaceFormat& format) {
   return {
       .form = format.group_name ? format.group_name : printable_name,
@@ -353,10 +357,11 @@ ReadTetMesh read_tet_mesh_bytes(std::string_view bytes, const std::string& name,
 
 LabelVolume read_label_volume_bytes(std::string_view bytes, const std::string& name,
                                     const std::string& extension) {
-  return streamed(need_format(volume_formats(), name + extension, FileKind::volume, FileUse::read), name)
-      .read(bytes, name, [&](const std::string& other) -> std::string {
-        throw InputError(name, 0, "its voxels are in another file, " + other + "; give the header's name");
-      });
+  return labels_of(volume_of_bytes(streamed_volume_format(name, extension), bytes, name, VoxelUse::labels));
+}
+
+ImageVolume read_image_bytes(std::string_view bytes, const std::string& name, const std::string& extension) {
+  return image_of(volume_of_bytes(streamed_volume_format(name, extension), bytes, name, VoxelUse::image));
 }
 
 std::string streamed_extensions() {
@@ -389,6 +394,10 @@ std::optional<SurfaceWithFields> read_surface_with_fields(const std::string& pat
 
 LabelVolume read_label_volume(const std::string& path) {
   return read_whole_volume(need_format(volume_formats(), path, FileKind::volume, FileUse::read), path);
+}
+
+ImageVolume read_image(const std::string& path) {
+  return read_whole_image(need_format(volume_formats(), path, FileKind::volume, FileUse::read), path);
 }
 
 std::int64_t label_layers(const std::string& path) {

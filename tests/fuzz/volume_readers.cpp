@@ -2,12 +2,14 @@
 
 // Fuzzes the readers of volumes: each must return a volume that satisfies label_volume.h, or throw an
 // InputError. The volume must survive a round trip through the NRRD writer. The file to which a header refers
-// follows a line of equal signs. Sources must give the same labels box by box as as a whole.
+// follows a line of equal signs. Sources must give the same labels box by box as as a whole. All files are
+// read as images, too, whose values must be finite.
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "common/io/volumes/hdf5_volume.h"
 #include "common/io/volumes/inr.h"
@@ -28,13 +30,26 @@ constexpr std::string_view between = "=====\n";
 
 using Read = LabelVolume (*)(std::string_view, const std::string&, const FileReader&);
 
-void run(std::string_view bytes, Read read) {
+void check_image(const ImageVolume& image) {
+  TETWRIGHT_CHECK(image.origin.allFinite() && image.directions.allFinite() && !image.channels.empty());
+  for (const std::vector<float>& channel : image.channels) {
+    TETWRIGHT_CHECK(channel.size() == image.voxels());
+    for (const float value : channel) TETWRIGHT_CHECK(std::isfinite(value));
+  }
+}
+
+void run(std::string_view bytes, Read read, VolumeReader open) {
   const std::size_t at = bytes.find(between);
+  const auto others = [&](const std::string& path) {
+    if (at == std::string_view::npos) throw InputError(path + ": there is no such file");
+    return std::string(bytes.substr(at + between.size()));
+  };
   try {
-    const LabelVolume volume = read(bytes.substr(0, at), "fuzz", [&](const std::string& path) {
-      if (at == std::string_view::npos) throw InputError(path + ": there is no such file");
-      return std::string(bytes.substr(at + between.size()));
-    });
+    check_image(image_of(open(bytes.substr(0, at), "fuzz", others, VoxelUse::image)));
+  } catch (const InputError&) {
+  }
+  try {
+    const LabelVolume volume = read(bytes.substr(0, at), "fuzz", others);
     std::size_t voxels = 1;
     for (const int n : volume.size) {
       TETWRIGHT_CHECK(n >= 1);
@@ -81,6 +96,39 @@ void run_source(const LabelSource& source) {
   }
 }
 
+/// Reads an image as a whole and by its slices.
+void run_image(const VoxelSource& source) {
+  const LabelGrid& grid = source.grid();
+  std::uint64_t block = static_cast<std::uint64_t>(source.channels());
+  for (const int n : source.block()) block *= static_cast<std::uint64_t>(n);
+  if (grid.voxels() > max_voxels / static_cast<std::uint64_t>(source.channels()) || block > max_voxels)
+    return;
+  const ImageVolume image = read_all_values(source, "fuzz");
+  check_image(image);
+  const std::size_t slice = grid.voxels() / static_cast<std::size_t>(grid.size[2]);
+  std::vector<float> values(slice);
+  for (std::int64_t c = 0; c < source.channels(); ++c)
+    for (int z = 0; z < grid.size[2]; ++z) {
+      source.read_values({0, 0, z}, {grid.size[0], grid.size[1], z + 1}, c, values);
+      TETWRIGHT_CHECK(std::equal(
+          values.begin(), values.end(),
+          image.channels[static_cast<std::size_t>(c)].begin() + static_cast<std::ptrdiff_t>(slice) * z));
+    }
+}
+
+/// Opens a file for labels, then as an image.
+template <class Open>
+void run_both(const Open& open) {
+  try {
+    run_source(*open(VoxelUse::labels));
+  } catch (const InputError&) {
+  }
+  try {
+    run_image(*open(VoxelUse::image));
+  } catch (const InputError&) {
+  }
+}
+
 /// Reads an array of zarr: its metadata, and bytes that all chunks have. Three parts are the metadata of an
 /// image, of its array, and a chunk.
 void run_zarr(std::string_view bytes) {
@@ -102,10 +150,7 @@ void run_zarr(std::string_view bytes) {
     if (name != (third ? "zarr.json" : image && group ? ".zattrs" : ".zarray")) return nullptr;
     return std::make_unique<MemoryRanges>(path, text);
   };
-  try {
-    run_source(*open_zarr("f", 1 << 12, open));
-  } catch (const InputError&) {
-  }
+  run_both([&](VoxelUse use) { return open_zarr("f", 1 << 12, open, use); });
 }
 
 /// A file in memory with a path.
@@ -124,28 +169,31 @@ class NamedMemory {
   int file_;
 };
 
-void run_file(std::string_view bytes, std::unique_ptr<LabelSource> (*open)(const std::string& path)) {
+void run_file(std::string_view bytes,
+              std::unique_ptr<VoxelSource> (*open)(const std::string& path, VoxelUse use)) {
   const NamedMemory file(bytes);
-  try {
-    run_source(*open(file.path()));
-  } catch (const InputError&) {
-  }
+  run_both([&](VoxelUse use) { return open(file.path(), use); });
 }
 
 using Bytes = std::string_view;
 constexpr Target targets[] = {
     {"nrrd",
      [](Bytes b) {
-       run(b, read_nrrd);
+       run(b, read_nrrd, open_nrrd);
        run_layers(b);
      }},
-    {"metaimage", [](Bytes b) { run(b, read_metaimage); }},
-    {"nifti", [](Bytes b) { run(b, read_nifti); }},
-    {"inr", [](Bytes b) { run(b, read_inr_alone); }},
+    {"metaimage", [](Bytes b) { run(b, read_metaimage, open_metaimage); }},
+    {"nifti", [](Bytes b) { run(b, read_nifti, open_nifti); }},
+    {"inr", [](Bytes b) { run(b, read_inr_alone, open_inr); }},
     {"zarr", run_zarr},
-    {"tiff", [](Bytes b) { run_file(b, [](const std::string& p) { return open_tiff_stack(p, 1 << 12); }); }},
+    {"tiff",
+     [](Bytes b) {
+       run_file(b, [](const std::string& p, VoxelUse use) { return open_tiff_stack(p, 1 << 12, use); });
+     }},
     {"hdf5",
-     [](Bytes b) { run_file(b, [](const std::string& p) { return open_hdf5_volume(p, {}, 1 << 12); }); }},
+     [](Bytes b) {
+       run_file(b, [](const std::string& p, VoxelUse use) { return open_hdf5_volume(p, {}, 1 << 12, use); });
+     }},
 };
 
 }  // namespace

@@ -12,7 +12,7 @@
 
 #include "common/io/encodings/file_ranges.h"
 #include "common/io/volumes/voxel_data.h"
-#include "tetwright/label_source.h"
+#include "common/io/volumes/voxel_source.h"
 
 namespace tetwright {
 
@@ -52,7 +52,13 @@ struct ChunkLayout {
   std::array<std::size_t, 3> strides{};  ///< from one voxel to the next along each axis, bytes
   std::size_t bytes = 0;                 ///< size of a chunk
   VoxelFormat format;
+  std::int64_t channels = 1;        ///< of the volume
+  std::int64_t chunk_channels = 1;  ///< of a chunk
+  std::size_t channel_stride = 0;   ///< from one channel to the next in a chunk, bytes
 };
+
+/// Number of a chunk along x, y, z and the axis of channels.
+using ChunkNumber = std::array<int, 4>;
 
 /// Checks the size of a chunk with voxels of `each` bytes.
 /// \return its bytes
@@ -61,7 +67,7 @@ std::int64_t checked_chunk_bytes(std::span<const std::int64_t> size, std::size_t
                                  const std::string& file);
 
 /// A volume in chunks of equal size, decoded one by one.
-class ChunkedSource : public LabelSource {
+class ChunkedSource : public VoxelSource {
  public:
   VoxelIndex block() const override { return layout_.size; }
   std::size_t decoding_bytes() const override { return layout_.bytes; }
@@ -72,17 +78,23 @@ class ChunkedSource : public LabelSource {
   const ChunkLayout& layout() const { return layout_; }
 
   /// Reads and decodes a chunk. Is called concurrently.
-  /// \param chunk its number along each axis
   /// \return its voxels, or a buffer without data if it is not in the file
-  virtual ByteBuffer load_chunk(const VoxelIndex& chunk) const = 0;
+  virtual ByteBuffer load_chunk(const ChunkNumber& chunk) const = 0;
   /// File and chunk for messages.
-  virtual std::string chunk_name(const VoxelIndex& chunk) const = 0;
+  virtual std::string chunk_name(const ChunkNumber& chunk) const = 0;
   /// Label of all voxels of a chunk that is not in the file.
-  virtual MaterialTag fill_label(const VoxelIndex& chunk) const = 0;
+  virtual MaterialTag fill_label(const ChunkNumber& chunk) const = 0;
+  /// Value of an image in such a chunk.
+  virtual float fill_value(const ChunkNumber& chunk) const = 0;
 
   void read_box(const VoxelIndex& low, const VoxelIndex& high, std::span<MaterialTag> out) const override;
+  void read_box_of_values(const VoxelIndex& low, const VoxelIndex& high, std::int64_t channel,
+                          std::span<float> out) const override;
 
  private:
+  template <class Value>
+  void read_numbers(const VoxelIndex& low, const VoxelIndex& high, std::int64_t channel, Value* out) const;
+
   ChunkLayout layout_;
   std::array<std::uint64_t, 3> chunks_{};  ///< along each axis
   mutable ChunkCache cache_;

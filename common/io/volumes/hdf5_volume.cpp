@@ -78,9 +78,11 @@ std::vector<std::int64_t> shape_of(hid_t dataset) {
   return out;
 }
 
-/// Paths of the datasets of three axes, beside those of one item, and whole numbers.
-struct LabelDatasets {
-  std::vector<std::string> paths;
+/// Paths of the datasets of three axes, beside those of one item, and whole numbers. Those of images have any
+/// numbers, and may have an axis of channels.
+struct VolumeDatasets {
+  VoxelUse use;
+  std::vector<std::string> paths = {};
 
   static herr_t take(hid_t file, const char* name, const H5O_info_t* info, void* user) {
     if (info->type != H5O_TYPE_DATASET) return 0;
@@ -90,17 +92,23 @@ struct LabelDatasets {
     const std::vector<std::int64_t> shape = shape_of(dataset.id());
     const auto longer = std::count_if(shape.begin(), shape.end(), [](std::int64_t n) { return n != 1; });
     const H5T_class_t kind = H5Tget_class(type.id());
-    if (shape.size() >= 3 && longer <= 3 && (kind == H5T_INTEGER || kind == H5T_ENUM))
-      static_cast<LabelDatasets*>(user)->paths.push_back("/" + std::string(name));
+    auto& found = *static_cast<VolumeDatasets*>(user);
+    const bool image = found.use == VoxelUse::image;
+    if (shape.size() >= 3 && longer <= (image ? 4 : 3) &&
+        (kind == H5T_INTEGER || kind == H5T_ENUM || (image && kind == H5T_FLOAT)))
+      found.paths.push_back("/" + std::string(name));
     return 0;
   }
 };
 
-std::string only_dataset(hid_t file, const std::string& path) {
-  LabelDatasets found;
-  if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, LabelDatasets::take, &found, H5O_INFO_BASIC) < 0)
+std::string only_dataset(hid_t file, const std::string& path, VoxelUse use) {
+  VolumeDatasets found{use};
+  if (H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, VolumeDatasets::take, &found, H5O_INFO_BASIC) < 0)
     throw InputError(path, 0, "its list of datasets cannot be read; the file is damaged");
-  if (found.paths.empty()) throw InputError(path, 0, "it has no dataset of three axes and whole numbers");
+  if (found.paths.empty())
+    throw InputError(path, 0,
+                     std::string("it has no dataset of three axes and ") +
+                         (use == VoxelUse::labels ? "whole numbers" : "numbers"));
   if (found.paths.size() > 1)
     throw InputError(path, 0,
                      "it has " + std::to_string(found.paths.size()) + " datasets of three axes (" +
@@ -165,7 +173,7 @@ struct Hdf5Dataset {
   Hdf5Handle file, dataset;
   std::string name;  ///< file and dataset for messages
   std::vector<std::int64_t> shape, chunk;
-  std::array<std::size_t, 3> axes{};  ///< x, y and z
+  VolumeAxes axes;
   VoxelType type = VoxelType::uint8;
   Hdf5Handle memory;  ///< type of the numbers in memory
 };
@@ -185,12 +193,12 @@ void check_filters(hid_t creation, const std::string& name) {
   }
 }
 
-Hdf5Dataset open_dataset(const std::string& path, std::string inside) {
+Hdf5Dataset open_dataset(const std::string& path, std::string inside, VoxelUse use) {
   (void)FileRanges(path);  // says why a file cannot be read
   quiet_hdf5();
   Hdf5Handle file(H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose);
   if (!file.good()) throw InputError(path, 0, "this is not an HDF5 file, or it is damaged");
-  if (inside.empty()) inside = only_dataset(file.id(), path);
+  if (inside.empty()) inside = only_dataset(file.id(), path, use);
   // Chunks are kept by this program.
   const Hdf5Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
   H5Pset_chunk_cache(access.id(), 0, 0, 0);
@@ -199,7 +207,11 @@ Hdf5Dataset open_dataset(const std::string& path, std::string inside) {
   if (!dataset.good()) throw InputError(name, 0, "it is missing, or is a group");
   const Hdf5Handle stored(H5Dget_type(dataset.id()), H5Tclose);
   const std::optional<Hdf5Type> type = number_type(stored.id());
-  if (!type) throw InputError(name, 0, "its items are not whole numbers; store the labels as integers");
+  if (!type)
+    throw InputError(name, 0,
+                     use == VoxelUse::labels
+                         ? "its items are not whole numbers; store the labels as integers"
+                         : "its items are not numbers of 8 to 64 bits; " + numbers_to_save(use, {}));
   // Enumerations are read as they are, since the library converts them only to themselves. Their native
   // numbers have fewer bytes than the file's if those do not use all of their bits. The library writes beyond
   // its own buffer when it looks for the native type of such an enumeration (HDF5 1.10), so it is not asked.
@@ -216,7 +228,7 @@ Hdf5Dataset open_dataset(const std::string& path, std::string inside) {
                     H5Tclose);
   Hdf5Dataset out{std::move(file), std::move(dataset), name, {}, {}, {}, type->type, std::move(memory)};
   out.shape = shape_of(out.dataset.id());
-  out.axes = spatial_axes(out.shape, axis_tags(out.dataset.id()), name);
+  out.axes = volume_axes(out.shape, axis_tags(out.dataset.id()), use, name);
   const Hdf5Handle creation(H5Dget_create_plist(out.dataset.id()), H5Pclose);
   check_filters(creation.id(), name);
   const std::size_t axes = out.shape.size();
@@ -246,15 +258,16 @@ class Hdf5Source final : public ChunkedSource {
   }
 
  protected:
-  ByteBuffer load_chunk(const VoxelIndex& chunk) const override {
+  ByteBuffer load_chunk(const ChunkNumber& chunk) const override {
     const std::size_t axes = file_->shape.size();
     std::vector<hsize_t> begin(axes, 0), count(axes, 1), origin(axes, 0), size(axes);
     for (std::size_t k = 0; k < axes; ++k) size[k] = static_cast<hsize_t>(file_->chunk[k]);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t axis = file_->axes[k];
-      begin[axis] = static_cast<hsize_t>(chunk[k]) * size[axis];
+    const auto select = [&](std::size_t axis, int number) {
+      begin[axis] = static_cast<hsize_t>(number) * size[axis];
       count[axis] = std::min<hsize_t>(size[axis], static_cast<hsize_t>(file_->shape[axis]) - begin[axis]);
-    }
+    };
+    for (std::size_t k = 0; k < 3; ++k) select(file_->axes.spatial[k], chunk[k]);
+    if (file_->axes.channel) select(*file_->axes.channel, chunk[3]);
     ByteBuffer out(layout().bytes);
     const std::lock_guard lock(hdf5_mutex());
     quiet_hdf5();
@@ -269,14 +282,15 @@ class Hdf5Source final : public ChunkedSource {
     return out;
   }
 
-  std::string chunk_name(const VoxelIndex& chunk) const override {
+  std::string chunk_name(const ChunkNumber& chunk) const override {
     return file_->name + ": chunk (" + std::to_string(chunk[0]) + ", " + std::to_string(chunk[1]) + ", " +
-           std::to_string(chunk[2]) + ")";
+           std::to_string(chunk[2]) + ")" +
+           (file_->axes.channel ? " of channels " + std::to_string(chunk[3]) : "");
   }
 
-  MaterialTag fill_label(const VoxelIndex& /*chunk*/) const override {
-    return 0;
-  }  // the library fills chunks
+  // The library fills chunks.
+  MaterialTag fill_label(const ChunkNumber& /*chunk*/) const override { return 0; }
+  float fill_value(const ChunkNumber& /*chunk*/) const override { return 0; }
 
  private:
   std::optional<Hdf5Dataset> file_;
@@ -284,13 +298,13 @@ class Hdf5Source final : public ChunkedSource {
 
 }  // namespace
 
-std::unique_ptr<LabelSource> open_hdf5_volume(const std::string& path, const std::string& dataset,
-                                              std::size_t cache_bytes) {
+std::unique_ptr<VoxelSource> open_hdf5_volume(const std::string& path, const std::string& dataset,
+                                              std::size_t cache_bytes, VoxelUse use) {
   std::unique_lock lock(hdf5_mutex());
-  Hdf5Dataset opened = open_dataset(path, dataset);
+  Hdf5Dataset opened = open_dataset(path, dataset, use);
   LabelGrid grid;
   std::array<std::int64_t, 3> size;
-  for (std::size_t k = 0; k < 3; ++k) size[k] = opened.shape[opened.axes[k]];
+  for (std::size_t k = 0; k < 3; ++k) size[k] = opened.shape[opened.axes.spatial[k]];
   grid.size = checked_size(size, opened.name, 0, max_source_voxels);
   if (const auto spacing = element_size(opened.dataset.id()))
     grid.directions = Vec3((*spacing)[2], (*spacing)[1], (*spacing)[0]).asDiagonal();
@@ -303,8 +317,14 @@ std::unique_ptr<LabelSource> open_hdf5_volume(const std::string& path, const std
   layout.bytes = static_cast<std::size_t>(checked_chunk_bytes(opened.chunk, each, opened.name));
   const std::vector<std::size_t> strides = strides_of(opened.chunk, row_major_order(opened.chunk.size()));
   for (std::size_t k = 0; k < 3; ++k) {
-    layout.size[k] = static_cast<int>(opened.chunk[opened.axes[k]]);
-    layout.strides[k] = strides[opened.axes[k]] * each;
+    layout.size[k] = static_cast<int>(opened.chunk[opened.axes.spatial[k]]);
+    layout.strides[k] = strides[opened.axes.spatial[k]] * each;
+  }
+  if (const std::optional<std::size_t> axis = opened.axes.channel) {
+    layout.channels = opened.shape[*axis];
+    check_channels(layout.channels, grid.size, use, opened.name, 0, max_source_voxels);
+    layout.chunk_channels = opened.chunk[*axis];
+    layout.channel_stride = strides[*axis] * each;
   }
   return std::make_unique<Hdf5Source>(std::move(grid), layout, cache_bytes, std::move(opened));
 }

@@ -4,7 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "tetwright/label_source.h"
+#include "common/io/volumes/voxel_data.h"
+#include "common/io/volumes/voxel_source.h"
 
 namespace tetwright {
 
@@ -13,12 +14,13 @@ namespace tetwright {
 /// it the spacing is 1.
 ///
 /// The library's calls take turns: several threads decode no faster than one.
-/// \param dataset its path in the file; empty: the only dataset of three axes and whole numbers
+/// \param dataset its path in the file; empty: the only dataset of three axes and whole numbers, or for an
+///   image of numbers, with another axis if it has channels
 /// \param cache_bytes decoded chunks that are kept, bytes
 /// \throws InputError if the file is no HDF5 file, has no such dataset or several, or the dataset is
 /// compressed by
 ///   a filter that the library does not have
-std::unique_ptr<LabelSource> open_hdf5_volume(const std::string& path, const std::string& dataset,
-                                              std::size_t cache_bytes);
+std::unique_ptr<VoxelSource> open_hdf5_volume(const std::string& path, const std::string& dataset,
+                                              std::size_t cache_bytes, VoxelUse use = VoxelUse::labels);
 
 }  // namespace tetwright

@@ -2,6 +2,7 @@
 #include "common/io/volumes/inr.h"
 
 #include <optional>
+#include <utility>
 
 #include "common/io/encodings/byte_order.h"
 #include "common/io/encodings/vtk_numbers.h"
@@ -56,7 +57,7 @@ HeaderFields fields_of(const std::string& text, const std::string& name) {
   return header;
 }
 
-VoxelFormat voxel_format(const HeaderFields& header) {
+VoxelFormat voxel_format(const HeaderFields& header, VoxelUse use) {
   const std::string type = header.lower_text("type");
   const std::vector<std::string_view> size = header.words("pixsize");
   std::int64_t bits = 0;
@@ -83,8 +84,8 @@ VoxelFormat voxel_format(const HeaderFields& header) {
   if (!known)
     header.fail(type == "unsigned fixed" || type == "signed fixed" || type == "float" ? "pixsize" : "type",
                 "voxels of type " + in_quotes(header.text("type")) + " and size " +
-                    in_quotes(header.text("pixsize")) +
-                    " are not supported; save the labels as unsigned fixed of 8, 16 or 32 bits");
+                    in_quotes(header.text("pixsize")) + " are not supported; " +
+                    numbers_to_save(use, "save the labels as unsigned fixed of 8, 16 or 32 bits"));
   VoxelFormat format;
   format.type = *known;
   if (voxel_bytes(format.type) > 1 || header.has("cpu")) {
@@ -100,12 +101,13 @@ VoxelFormat voxel_format(const HeaderFields& header) {
 
 }  // namespace
 
-LabelVolume read_inr(std::string_view bytes, const std::string& name) {
+EncodedVolume open_inr(std::string_view bytes, const std::string& name, const FileReader& /*others*/,
+                       VoxelUse use) {
   ByteSource source(
       bytes, bytes.starts_with("\x1f\x8b") ? ByteSource::Packing::deflate : ByteSource::Packing::none, name);
   const std::string header_bytes = read_header_bytes(source);
   const HeaderFields header = fields_of(header_bytes, name);
-  LabelVolume volume;
+  LabelGrid volume;
   std::array<std::int64_t, 3> sizes;
   constexpr std::array<const char*, 3> size_names{"xdim", "ydim", "zdim"}, spacing_names{"vx", "vy", "vz"},
       origin_names{"tx", "ty", "tz"}, turn_names{"rx", "ry", "rz"};
@@ -118,14 +120,21 @@ LabelVolume read_inr(std::string_view bytes, const std::string& name) {
       header.fail(turn_names[k], "a rotated volume (" + in_quotes(header.text(turn_names[k])) +
                                      ") is not supported; save it as NRRD or NIfTI");
   }
-  if (header.has("vdim"))
-    if (const std::int64_t n = header.integer("vdim"); n != 1)
-      header.fail("vdim",
-                  std::to_string(n) + " numbers per voxel; a volume with one label per voxel is needed");
   volume.size = checked_size(sizes, name, header.line("xdim"));
+  ChannelAxis channels{1, 0};
+  if (header.has("vdim")) {
+    channels.count = header.integer("vdim");
+    if (use == VoxelUse::labels && channels.count != 1)
+      header.fail("vdim", std::to_string(channels.count) +
+                              " numbers per voxel; a volume with one label per voxel is needed");
+    check_channels(channels.count, volume.size, use, name, header.line("vdim"));
+  }
   check_geometry(volume, name);
-  volume.labels = read_voxels(source, voxel_format(header), volume.size);
-  return volume;
+  return {volume, channels, voxel_format(header, use), std::move(source)};
+}
+
+LabelVolume read_inr(std::string_view bytes, const std::string& name) {
+  return labels_of(open_inr(bytes, name, {}, VoxelUse::labels));
 }
 
 }  // namespace tetwright

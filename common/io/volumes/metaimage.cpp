@@ -2,6 +2,8 @@
 #include "common/io/volumes/metaimage.h"
 
 #include <array>
+#include <memory>
+#include <utility>
 
 #include "common/io/encodings/byte_order.h"
 #include "common/io/encodings/vtk_numbers.h"
@@ -15,7 +17,7 @@ namespace tetwright {
 
 namespace {
 
-VoxelType metaimage_voxel_type(const HeaderFields& header) {
+VoxelType metaimage_voxel_type(const HeaderFields& header, VoxelUse use) {
   // A long has 4 bytes in these files, whichever machine wrote them.
   constexpr std::array<std::pair<std::string_view, VoxelType>, 12> names{
       {{"met_char", VoxelType::int8},
@@ -33,10 +35,9 @@ VoxelType metaimage_voxel_type(const HeaderFields& header) {
   const std::string type = header.lower_text("elementtype");
   for (const auto& [name, value] : names)
     if (name == type) return value;
-  header.fail("elementtype",
-              "type " + in_quotes(header.text("elementtype")) +
-                  " of the voxels is not supported; save the labels as MET_UCHAR, MET_SHORT or "
-                  "MET_INT");
+  header.fail("elementtype", "type " + in_quotes(header.text("elementtype")) +
+                                 " of the voxels is not supported; " +
+                                 numbers_to_save(use, "save the labels as MET_UCHAR, MET_SHORT or MET_INT"));
 }
 
 /// Reads the header, including the line that locates the voxels.
@@ -67,17 +68,13 @@ bool flag(const HeaderFields& header, const std::string& field, bool otherwise) 
   return false;
 }
 
-LabelVolume read_geometry(const HeaderFields& header, std::int64_t max_voxels) {
+LabelGrid read_geometry(const HeaderFields& header, std::int64_t max_voxels, VoxelUse use) {
   if (header.has("objecttype") && header.lower_text("objecttype") != "image")
     header.fail("objecttype",
                 "an object of type Image is needed, this one is " + in_quotes(header.text("objecttype")));
   if (const std::int64_t n = header.integer("ndims"); n != 3)
-    header.fail("ndims", std::to_string(n) + " dimensions; a volume of labels has 3");
-  if (header.has("elementnumberofchannels"))
-    if (const std::int64_t n = header.integer("elementnumberofchannels"); n != 1)
-      header.fail("elementnumberofchannels",
-                  std::to_string(n) + " channels; a volume with one label per voxel is needed");
-  LabelVolume volume;
+    header.fail("ndims", std::to_string(n) + " dimensions; " + name_of_use(use) + " has 3");
+  LabelGrid volume;
   volume.size = checked_size(header.integers("dimsize"), header.file(), header.line("dimsize"), max_voxels);
   if (const std::string field = header.any_of({"offset", "position", "origin"}); header.has(field)) {
     const std::vector<double> origin = header.numbers(field, 3);
@@ -104,9 +101,13 @@ LabelVolume read_geometry(const HeaderFields& header, std::int64_t max_voxels) {
 
 /// The header of a MetaImage file, checked.
 struct MetaImageFile {
-  MetaImageFile(TextScanner& in, std::int64_t max_voxels)
-      : header(read_metaimage_header(in)), volume(read_geometry(header, max_voxels)) {
-    format.type = metaimage_voxel_type(header);
+  MetaImageFile(TextScanner& in, std::int64_t max_voxels, VoxelUse use)
+      : header(read_metaimage_header(in)), grid(read_geometry(header, max_voxels, use)) {
+    if (const std::string field = "elementnumberofchannels"; header.has(field)) {
+      channels = {header.integer(field), 0};
+      check_channels(channels.count, grid.size, use, header.file(), header.line(field), max_voxels);
+    }
+    format.type = metaimage_voxel_type(header, use);
     const bool big = flag(header, header.any_of({"elementbyteordermsb", "binarydatabyteordermsb"}), false);
     format.swap = big == little_endian_machine;
     packed = flag(header, "compresseddata", false);
@@ -122,7 +123,8 @@ struct MetaImageFile {
     const std::int64_t skip = header.has("headersize") ? header.integer("headersize") : 0;
     if (skip == -1) {
       if (packed || as_text) header.fail("headersize", "HeaderSize -1 is allowed only for raw data");
-      return behind_header + offset_from_end(file_size - behind_header, volume.size, format.type);
+      return behind_header +
+             offset_from_end(file_size - behind_header, grid.size, format.type, channels.count);
     }
     // Counted from the beginning of the file, which may be the header's or a separate one.
     if (skip < 0 || static_cast<std::uint64_t>(skip) > file_size)
@@ -132,7 +134,8 @@ struct MetaImageFile {
   }
 
   HeaderFields header;
-  LabelVolume volume;  ///< without labels
+  LabelGrid grid;
+  ChannelAxis channels;
   VoxelFormat format;
   bool packed = false, as_text = false;
   bool local = false;  ///< the voxels are in the file of the header
@@ -140,33 +143,35 @@ struct MetaImageFile {
 
 }  // namespace
 
-LabelVolume read_metaimage(std::string_view bytes, const std::string& name, const FileReader& read) {
+EncodedVolume open_metaimage(std::string_view bytes, const std::string& name, const FileReader& read,
+                             VoxelUse use) {
   TextScanner in(bytes, name);
-  MetaImageFile image(in, max_volume_voxels);
-  LabelVolume& volume = image.volume;
+  const MetaImageFile image(in, max_volume_voxels, use);
   DataFile file{name, {}};
   if (!image.local) file = read_data_file(image.header, "elementdatafile", read);
-  const std::string_view whole = image.local ? bytes : std::string_view(file.bytes);
+  const auto other = std::make_shared<const std::string>(std::move(file.bytes));
+  const std::string_view whole = image.local ? bytes : std::string_view(*other);
   const std::string_view data =
       whole.substr(static_cast<std::size_t>(image.offset(image.local ? in.offset() : 0, whole.size())));
-  if (image.as_text) {
-    TextScanner body(data, file.path);
-    volume.labels = read_voxels_as_text(body, volume.size);
-    return std::move(volume);
-  }
-  ByteSource source(data, image.packed ? ByteSource::Packing::deflate : ByteSource::Packing::none, file.path);
-  volume.labels = read_voxels(source, image.format, volume.size);
-  return std::move(volume);
+  if (image.as_text) return {image.grid, image.channels, image.format, TextScanner(data, file.path), other};
+  return {
+      image.grid, image.channels, image.format,
+      ByteSource(data, image.packed ? ByteSource::Packing::deflate : ByteSource::Packing::none, file.path),
+      other};
 }
 
-std::optional<RawVolume> find_metaimage(const HeaderBytes& head, const std::string& name) {
+LabelVolume read_metaimage(std::string_view bytes, const std::string& name, const FileReader& read) {
+  return labels_of(open_metaimage(bytes, name, read, VoxelUse::labels));
+}
+
+std::optional<RawVolume> find_metaimage(const HeaderBytes& head, const std::string& name, VoxelUse use) {
   // The last field of a header.
   if (!head.whole_file() && lower_case(head.bytes).find("elementdatafile") == std::string::npos)
     return std::nullopt;
   TextScanner in(head.bytes, name);
-  const MetaImageFile image(in, max_source_voxels);
+  const MetaImageFile image(in, max_source_voxels, use);
   if (image.packed || image.as_text) return std::nullopt;
-  RawVolume found{image.volume, name, 0, image.format};
+  RawVolume found{image.grid, name, 0, image.format, image.channels};
   if (!image.local) found.file = data_file_path(image.header, "elementdatafile");
   const std::uint64_t size = image.local ? head.file_size : data_file_size(image.header, "elementdatafile");
   found.offset = image.offset(image.local ? in.offset() : 0, size);

@@ -2,6 +2,8 @@
 #include "common/io/volumes/nifti.h"
 
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "common/io/encodings/byte_order.h"
 #include "common/io/volumes/voxel_data.h"
@@ -30,7 +32,8 @@ constexpr Layout version_2{540, 4, 16, 8, 12, 104, 8, 168, 176, 184, 344, 348, 4
 
 class NiftiHeader {
  public:
-  NiftiHeader(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {
+  NiftiHeader(std::string_view bytes, const std::string& name, VoxelUse use)
+      : bytes_(bytes), name_(name), use_(use) {
     if (bytes_.empty()) fail("the file is empty");
     if (bytes_.size() < sizeof(std::int32_t))
       fail("only " + std::to_string(bytes_.size()) + " bytes; it is truncated");
@@ -61,18 +64,33 @@ class NiftiHeader {
   std::array<int, 3> size(std::int64_t max_voxels) const {
     const std::int64_t axes = dim(0);
     if (axes < 3 || axes > 7)
-      fail("dim[0] is " + std::to_string(axes) + "; a volume of labels has 3 dimensions");
+      fail("dim[0] is " + std::to_string(axes) + "; " + name_of_use(use_) + " has 3 dimensions");
     std::array<std::int64_t, 3> sizes;
     for (int k = 1; k <= axes; ++k) {
       const std::int64_t n = dim(static_cast<std::size_t>(k));
       if (k <= 3)
         sizes[static_cast<std::size_t>(k - 1)] = n;
-      else if (n != 1)
+      else if (n != 1 && use_ == VoxelUse::labels)
         fail("dim[" + std::to_string(k) + "] is " + std::to_string(n) +
              (k == 4 ? "; a volume of a single time point is needed, save one of them"
                      : "; a volume with one label per voxel is needed"));
     }
     return checked_size(sizes, name_, 0, max_voxels);
+  }
+
+  /// Items of the axis of times or vectors.
+  ChannelAxis channels(const std::array<int, 3>& size, std::int64_t max_voxels) const {
+    ChannelAxis channels;
+    for (std::size_t k = 4; k <= static_cast<std::size_t>(dim(0)); ++k) {
+      const std::int64_t n = dim(k);
+      if (n == 1) continue;
+      if (channels.count != 1)
+        fail("dim[" + std::to_string(k) + "] is " + std::to_string(n) +
+             ", and an axis before it has several items, too; save one of its items");
+      channels.count = n;
+      check_channels(n, size, use_, name_, 0, max_voxels);
+    }
+    return channels;
   }
 
   VoxelFormat format() const {
@@ -173,8 +191,8 @@ class NiftiHeader {
       case 1280:
         return VoxelType::uint64;
       default:
-        fail("type " + std::to_string(type) + " (" + type_name(type) +
-             ") of the voxels is not supported; save the labels as integers");
+        fail("type " + std::to_string(type) + " (" + type_name(type) + ") of the voxels is not supported; " +
+             numbers_to_save(use_, "save the labels as integers"));
     }
   }
 
@@ -230,12 +248,13 @@ class NiftiHeader {
 
   std::string_view bytes_;
   const std::string& name_;
+  VoxelUse use_;
   const Layout* layout_ = &version_1;
   bool swap_ = false, detached_ = false;
 };
 
 /// Voxel file of a header: "a.img" for "a.hdr", in upper case if the extension is.
-std::string image_of(const std::string& name) {
+std::string image_file_of(const std::string& name) {
   if (name.ends_with(".HDR")) return name.substr(0, name.size() - 4) + ".IMG";
   return (name.ends_with(".hdr") ? name.substr(0, name.size() - 4) : name) + ".img";
 }
@@ -253,46 +272,52 @@ std::string begins_behind_end(const std::string& file, std::uint64_t offset, std
 
 }  // namespace
 
-LabelVolume read_nifti(std::string_view bytes, const std::string& name, const FileReader& read_file) {
+EncodedVolume open_nifti(std::string_view bytes, const std::string& name, const FileReader& read_file,
+                         VoxelUse use) {
   ByteSource source = source_of(bytes, name);
   // The header begins with its own size.
   std::string header_bytes(source.take(static_cast<std::size_t>(version_1.header_size)));
   if (header_bytes.size() >= 4 && (load<std::int32_t>(header_bytes.data(), false) == version_2.header_size ||
                                    load<std::int32_t>(header_bytes.data(), true) == version_2.header_size))
     header_bytes += source.take(static_cast<std::size_t>(version_2.header_size - version_1.header_size));
-  const NiftiHeader header(header_bytes, name);
-  LabelVolume volume;
+  const NiftiHeader header(header_bytes, name, use);
+  LabelGrid volume;
   volume.size = header.size(max_volume_voxels);
   header.read_geometry(volume);
   check_geometry(volume, name);
+  const ChannelAxis channels = header.channels(volume.size, max_volume_voxels);
   const VoxelFormat format = header.format();
-  const auto read_from = [&](ByteSource& voxels, const std::string& file, std::size_t taken) {
+  const auto skip_to_voxels = [&](ByteSource& voxels, const std::string& file, std::size_t taken) {
     const std::size_t between = header.offset() - taken;
     if (voxels.skip(between) < between)
       throw InputError(begins_behind_end(file, header.offset(), voxels.taken()));
-    volume.labels = read_voxels(voxels, format, volume.size);
   };
   if (!header.detached()) {
-    read_from(source, name, header.header_size());
-    return volume;
+    skip_to_voxels(source, name, header.header_size());
+    return {volume, channels, format, std::move(source)};
   }
-  const std::string image = image_of(name);
-  const std::string image_bytes = read_file(image);
-  ByteSource voxels = source_of(image_bytes, image);
-  read_from(voxels, image, 0);
-  return volume;
+  const std::string image = image_file_of(name);
+  const auto image_bytes = std::make_shared<const std::string>(read_file(image));
+  ByteSource voxels = source_of(*image_bytes, image);
+  skip_to_voxels(voxels, image, 0);
+  return {volume, channels, format, std::move(voxels), image_bytes};
 }
 
-std::optional<RawVolume> find_nifti(const HeaderBytes& head, const std::string& name) {
+LabelVolume read_nifti(std::string_view bytes, const std::string& name, const FileReader& read_file) {
+  return labels_of(open_nifti(bytes, name, read_file, VoxelUse::labels));
+}
+
+std::optional<RawVolume> find_nifti(const HeaderBytes& head, const std::string& name, VoxelUse use) {
   if (is_gzip(head.bytes)) return std::nullopt;
-  const NiftiHeader header(head.bytes, name);
+  const NiftiHeader header(head.bytes, name, use);
   RawVolume found{{}, name, header.offset(), header.format()};
   found.grid.size = header.size(max_source_voxels);
+  found.channels = header.channels(found.grid.size, max_source_voxels);
   header.read_geometry(found.grid);
   check_geometry(found.grid, name);
   std::uint64_t size = head.file_size;
   if (header.detached()) {
-    found.file = image_of(name);
+    found.file = image_file_of(name);
     const FileRanges image(found.file);
     if (is_gzip(image.head(2).view())) return std::nullopt;
     size = image.size();

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "common/io/encodings/byte_order.h"
@@ -65,12 +67,12 @@ std::vector<std::optional<Vec3>> vectors(const HeaderFields& header, const std::
 class NrrdHeader {
  public:
   /// \param layers if above 1, an axis that is not spatial has this size: those of overlapping segments
-  NrrdHeader(const HeaderFields& fields, std::int64_t max_voxels, std::int64_t layers)
-      : fields_(fields), max_voxels_(max_voxels), layers_(layers) {
+  NrrdHeader(const HeaderFields& fields, std::int64_t max_voxels, std::int64_t layers, VoxelUse use)
+      : fields_(fields), max_voxels_(max_voxels), layers_(layers), use_(use) {
     const std::int64_t dimension = fields_.integer("dimension");
     if (dimension < 3 || dimension > max_axes)
-      fields_.fail("dimension",
-                   "dimension " + std::to_string(dimension) + "; a volume of labels has 3 spatial axes");
+      fields_.fail("dimension", "dimension " + std::to_string(dimension) + "; " + name_of_use(use) +
+                                    " has 3 spatial axes");
     axes_ = static_cast<std::size_t>(dimension);
     sizes_ = fields_.integers("sizes");
     need_one_each("sizes", sizes_.size());
@@ -86,10 +88,9 @@ class NrrdHeader {
     read_geometry();
   }
 
-  /// The volume without labels.
-  LabelVolume volume() const { return volume_; }
-  /// Number of spatial axes that vary faster than the layers.
-  std::size_t axes_before_layers() const { return axes_before_layers_; }
+  const LabelGrid& grid() const { return grid_; }
+  /// Axis of the layers, or of an image's channels.
+  const ChannelAxis& channels() const { return channels_; }
 
  private:
   void need_one_each(const std::string& field, std::size_t n) const {
@@ -104,49 +105,63 @@ class NrrdHeader {
     return kind == "domain" || kind == "space" || kind == "???" || kind == "none";
   }
 
-  /// Chooses three axes. Other axes must have size 1 and are dropped, first those that are not spatial.
+  /// Whether the axis may be that of layers or channels.
+  bool is_of_channels(std::size_t axis) const {
+    return !is_spatial(axis) && (layers_ > 1 ? sizes_[axis] == layers_ : sizes_[axis] > 1);
+  }
+
+  /// Chooses three axes and that of channels. Other axes must have size 1 and are dropped, first those that
+  /// are not spatial.
   void choose_axes() {
     for (std::size_t a = 0; a < axes_; ++a) chosen_.push_back(a);
-    const std::size_t wanted = layers_ > 1 ? 4 : 3;
+    const bool channels = layers_ > 1 || (use_ == VoxelUse::image &&
+                                          std::any_of(chosen_.begin(), chosen_.end(),
+                                                      [&](std::size_t a) { return is_of_channels(a); }));
+    const std::size_t wanted = channels ? 4 : 3;
     for (const bool only_others : {true, false})
       for (std::size_t k = chosen_.size(); k-- > 0 && chosen_.size() > wanted;)
         if (sizes_[chosen_[k]] == 1 && !(only_others && is_spatial(chosen_[k])))
           chosen_.erase(chosen_.begin() + static_cast<std::ptrdiff_t>(k));
-    if (layers_ > 1) {
-      const auto of_layers = std::find_if(chosen_.begin(), chosen_.end(), [&](std::size_t a) {
-        return sizes_[a] == layers_ && !is_spatial(a);
-      });
-      if (of_layers == chosen_.end())
+    if (channels) {
+      const auto axis =
+          std::find_if(chosen_.begin(), chosen_.end(), [&](std::size_t a) { return is_of_channels(a); });
+      if (axis == chosen_.end())
         fields_.fail("sizes", "its segments are in " + std::to_string(layers_) +
                                   " layers, but no axis of that size is other than spatial (of kind list)");
-      axes_before_layers_ = static_cast<std::size_t>(of_layers - chosen_.begin());
-      chosen_.erase(of_layers);
+      channels_ = {sizes_[*axis], static_cast<std::size_t>(axis - chosen_.begin())};
+      chosen_.erase(axis);
     }
     for (const std::size_t a : chosen_)
       if (!is_spatial(a))
         fields_.fail("sizes", "axis " + std::to_string(a) + " (" + std::to_string(sizes_[a]) +
                                   " items of kind " + in_quotes(kinds_.empty() ? "none" : kinds_[a]) +
-                                  ") is not a spatial axis; a volume with one label per voxel is needed");
+                                  ") is not a spatial axis; " +
+                                  (use_ == VoxelUse::labels ? "a volume with one label per voxel is needed"
+                                                            : "an image has three and one of channels"));
     if (chosen_.size() != 3)
       fields_.fail("sizes",
-                   std::to_string(chosen_.size()) +
-                       " axes of more than one item; a volume of labels has 3, save one of its parts");
+                   std::to_string(chosen_.size()) + " axes of more than one item; " + name_of_use(use_) +
+                       " has 3, " +
+                       (use_ == VoxelUse::labels ? "save one of its parts"
+                                                 : "and one of another kind (list, vector) for channels"));
     std::array<std::int64_t, 3> sizes;
     for (std::size_t k = 0; k < 3; ++k) sizes[k] = sizes_[chosen_[k]];
-    volume_.size = checked_size(sizes, fields_.file(), fields_.line("sizes"), max_voxels_);
+    grid_.size = checked_size(sizes, fields_.file(), fields_.line("sizes"), max_voxels_);
+    check_channels(channels_.count, grid_.size, layers_ > 1 ? VoxelUse::image : use_, fields_.file(),
+                   fields_.line("sizes"), max_voxels_);
   }
 
   void read_geometry() {
     if (fields_.has("space dimension") && fields_.integer("space dimension") != 3)
       fields_.fail("space dimension",
                    in_quotes(fields_.text("space dimension")) + " dimensions of space; 3 are needed");
-    if (fields_.has("space")) volume_.space = space_name();
+    if (fields_.has("space")) grid_.space = space_name();
     if (!directions_.empty()) {
       for (int k = 0; k < 3; ++k)
-        volume_.directions.col(k) = *directions_[chosen_[static_cast<std::size_t>(k)]];
+        grid_.directions.col(k) = *directions_[chosen_[static_cast<std::size_t>(k)]];
     } else if (fields_.has("spacings")) {
       const std::vector<double> spacings = fields_.numbers("spacings", axes_);
-      for (int k = 0; k < 3; ++k) volume_.directions(k, k) = spacings[chosen_[static_cast<std::size_t>(k)]];
+      for (int k = 0; k < 3; ++k) grid_.directions(k, k) = spacings[chosen_[static_cast<std::size_t>(k)]];
     } else {
       spacings_from_ends();
     }
@@ -155,7 +170,7 @@ class NrrdHeader {
       if (origin.size() != 1 || !origin[0])
         fields_.fail("space origin", "expected one vector like (0,0,0) as space origin, found " +
                                          in_quotes(fields_.text("space origin")));
-      volume_.origin = *origin[0];
+      grid_.origin = *origin[0];
     } else if (directions_.empty()) {
       origin_from_ends();
     }
@@ -193,7 +208,7 @@ class NrrdHeader {
       const std::size_t a = chosen_[static_cast<std::size_t>(k)];
       const auto steps = static_cast<double>(in_cells(a) ? sizes_[a] : sizes_[a] - 1);
       if (!std::isnan(low[a]) && !std::isnan(high[a]) && steps > 0)
-        volume_.directions(k, k) = (high[a] - low[a]) / steps;
+        grid_.directions(k, k) = (high[a] - low[a]) / steps;
     }
   }
 
@@ -203,18 +218,20 @@ class NrrdHeader {
     const std::vector<double> low = fields_.numbers(mins, axes_);
     for (int k = 0; k < 3; ++k) {
       const std::size_t a = chosen_[static_cast<std::size_t>(k)];
-      if (!std::isnan(low[a])) volume_.origin[k] = low[a] + (in_cells(a) ? volume_.directions(k, k) / 2 : 0);
+      if (!std::isnan(low[a])) grid_.origin[k] = low[a] + (in_cells(a) ? grid_.directions(k, k) / 2 : 0);
     }
   }
 
   const HeaderFields& fields_;
   std::int64_t max_voxels_, layers_;
-  std::size_t axes_ = 0, axes_before_layers_ = 0;
+  VoxelUse use_;
+  std::size_t axes_ = 0;
   std::vector<std::int64_t> sizes_;
   std::vector<std::string_view> kinds_;
   std::vector<std::optional<Vec3>> directions_;
   std::vector<std::size_t> chosen_;
-  LabelVolume volume_;
+  LabelGrid grid_;
+  ChannelAxis channels_;
 };
 
 std::int64_t optional_integer(const HeaderFields& header, const std::string& field) {
@@ -244,12 +261,21 @@ bool is_swapped(const HeaderFields& header, VoxelType type) {
 
 enum class NrrdEncoding { raw, gzip, text };
 
+/// Content that is read from a file: labels, layers of labels, or values.
+enum class NrrdContent { labels, layers, image };
+
+NrrdContent content_for(VoxelUse use) {
+  return use == VoxelUse::labels ? NrrdContent::labels : NrrdContent::image;
+}
+
 /// The header of an NRRD file, checked.
 struct NrrdFile {
-  /// \param layered whether segments may overlap, in layers
-  NrrdFile(TextScanner& in, std::int64_t max_voxels, bool layered = false)
+  NrrdFile(TextScanner& in, std::int64_t max_voxels, NrrdContent content)
       : fields(read_nrrd_header(in, segments)) {
-    if (segments.layers() > 1 && !layered)
+    if (segments.layers() > 1 && content == NrrdContent::image)
+      fields.fail("sizes", "its segments overlap, in " + std::to_string(segments.layers()) +
+                               " layers: it is a segmentation, not an image");
+    if (segments.layers() > 1 && content == NrrdContent::labels)
       fields.fail("sizes",
                   "its segments overlap, in " + std::to_string(segments.layers()) +
                       " layers; each voxel needs one label: give it as a file, whose segments are masks, "
@@ -263,12 +289,13 @@ struct NrrdFile {
     else if (named != "raw")
       fields.fail("encoding",
                   "encoding " + in_quotes(named) + " is not supported; save the volume as raw or gzip");
-    const NrrdHeader header(fields, max_voxels, segments.layers());
-    volume = header.volume();
-    axes_before_layers = header.axes_before_layers();
-    if (segments.layers() == 1) segments.give_names_and_colours(volume);
-    check_geometry(volume, in.name());
-    format.type = nrrd_voxel_type(fields);
+    const VoxelUse use = content == NrrdContent::image ? VoxelUse::image : VoxelUse::labels;
+    const NrrdHeader header(fields, max_voxels, segments.layers(), use);
+    grid = header.grid();
+    channels = header.channels();
+    if (segments.layers() == 1) segments.give_names_and_colours(grid);
+    check_geometry(grid, in.name());
+    format.type = nrrd_voxel_type(fields, use);
     data_field = fields.any_of({"data file", "datafile"});
     detached = fields.has(data_field);
     lines_to_skip = optional_integer(fields, fields.any_of({"line skip", "lineskip"}));
@@ -285,54 +312,58 @@ struct NrrdFile {
   NrrdSegments segments;
   HeaderFields fields;
   NrrdEncoding encoding = NrrdEncoding::raw;
-  LabelVolume volume;  ///< without labels
+  LabelGrid grid;
+  ChannelAxis channels;
   VoxelFormat format;
   std::string data_field, skip_field;
   bool detached = false;
   std::int64_t lines_to_skip = 0, bytes_to_skip = 0;
-  std::size_t axes_before_layers = 0;
 };
 
-/// Reads the labels that follow a header.
-/// \param size items along each axis
-std::vector<MaterialTag> read_body(NrrdFile& nrrd, const TextScanner& in, std::string_view bytes,
-                                   const std::string& name, const FileReader& read,
-                                   const std::array<int, 3>& size) {
+/// Finds the voxels that follow a header.
+EncodedVolume find_body(NrrdFile& nrrd, const TextScanner& in, std::string_view bytes,
+                        const std::string& name, const FileReader& read) {
   const HeaderFields& header = nrrd.fields;
   DataFile file{name, {}};
   if (nrrd.detached) file = read_data_file(header, nrrd.data_field, read);
-  TextScanner body = nrrd.detached ? TextScanner(file.bytes, file.path) : in;
+  const auto other = std::make_shared<const std::string>(std::move(file.bytes));
+  TextScanner body = nrrd.detached ? TextScanner(*other, file.path) : in;
   // Voxels may begin with the bytes of a byte order mark, which the scanner would skip.
   const std::size_t begin = nrrd.detached ? 0 : body.offset();
   const std::size_t behind_lines = skip_lines(header, body);
-  std::string_view data = (nrrd.detached ? std::string_view(file.bytes) : bytes)
+  std::string_view data = (nrrd.detached ? std::string_view(*other) : bytes)
                               .substr(nrrd.lines_to_skip > 0 ? behind_lines : begin);
   nrrd.check_skip();
   const std::int64_t skip = nrrd.bytes_to_skip;
   if (nrrd.encoding == NrrdEncoding::text) {
     if (body.take_bytes(static_cast<std::size_t>(skip)).size() < static_cast<std::size_t>(skip))
       header.fail(nrrd.skip_field, std::to_string(skip) + " bytes to skip, but the data are shorter");
-    return read_voxels_as_text(body, size);
+    return {nrrd.grid, nrrd.channels, nrrd.format, std::move(body), other};
   }
   nrrd.format.swap = is_swapped(header, nrrd.format.type);
   if (skip == -1)
-    data.remove_prefix(static_cast<std::size_t>(offset_from_end(data.size(), size, nrrd.format.type)));
+    data.remove_prefix(static_cast<std::size_t>(
+        offset_from_end(data.size(), nrrd.grid.size, nrrd.format.type, nrrd.channels.count)));
   ByteSource source(
       data, nrrd.encoding == NrrdEncoding::gzip ? ByteSource::Packing::deflate : ByteSource::Packing::none,
       file.path);
   if (skip > 0 && source.skip(static_cast<std::uint64_t>(skip)) < static_cast<std::uint64_t>(skip))
     header.fail(nrrd.skip_field,
                 std::to_string(skip) + " bytes to skip, but the data have " + std::to_string(source.taken()));
-  return read_voxels(source, nrrd.format, size);
+  return {nrrd.grid, nrrd.channels, nrrd.format, std::move(source), other};
 }
 
 }  // namespace
 
-LabelVolume read_nrrd(std::string_view bytes, const std::string& name, const FileReader& read) {
+EncodedVolume open_nrrd(std::string_view bytes, const std::string& name, const FileReader& read,
+                        VoxelUse use) {
   TextScanner in(bytes, name);
-  NrrdFile nrrd(in, max_volume_voxels);
-  nrrd.volume.labels = read_body(nrrd, in, bytes, name, read, nrrd.volume.size);
-  return std::move(nrrd.volume);
+  NrrdFile nrrd(in, max_volume_voxels, content_for(use));
+  return find_body(nrrd, in, bytes, name, read);
+}
+
+LabelVolume read_nrrd(std::string_view bytes, const std::string& name, const FileReader& read) {
+  return labels_of(open_nrrd(bytes, name, read, VoxelUse::labels));
 }
 
 std::int64_t nrrd_layers(const HeaderBytes& head, const std::string& name) {
@@ -345,40 +376,27 @@ std::int64_t nrrd_layers(const HeaderBytes& head, const std::string& name) {
 std::vector<LabelVolume> read_nrrd_layers(std::string_view bytes, const std::string& name,
                                           const FileReader& read) {
   TextScanner in(bytes, name);
-  NrrdFile nrrd(in, max_volume_voxels, true);
-  const std::int64_t layers = nrrd.segments.layers();
-  // The body is read as a volume with the layers along the spatial axis that they precede.
-  std::array<std::int64_t, 3> all{nrrd.volume.size[0], nrrd.volume.size[1], nrrd.volume.size[2]};
-  all[std::min<std::size_t>(nrrd.axes_before_layers, 2)] *= layers;
-  const std::vector<MaterialTag> labels =
-      read_body(nrrd, in, bytes, name, read, checked_size(all, name, nrrd.fields.line("sizes")));
-  std::size_t before = 1;  // items of a layer that follow each other
-  for (std::size_t a = 0; a < nrrd.axes_before_layers; ++a)
-    before *= static_cast<std::size_t>(nrrd.volume.size[a]);
+  NrrdFile nrrd(in, max_volume_voxels, NrrdContent::layers);
+  std::vector<std::vector<MaterialTag>> layers = labels_of_channels(find_body(nrrd, in, bytes, name, read));
   std::vector<LabelVolume> volumes;
-  for (std::int64_t layer = 0; layer < layers; ++layer) {
-    LabelVolume& volume = volumes.emplace_back(nrrd.volume);
-    nrrd.segments.give_names_and_colours(volume, layer);
-    volume.labels.resize(volume.voxels());
-    for (std::size_t i = 0; i < volume.labels.size(); ++i)
-      volume.labels[i] =
-          labels[(i / before * static_cast<std::size_t>(layers) + static_cast<std::size_t>(layer)) * before +
-                 i % before];
+  for (std::size_t layer = 0; layer < layers.size(); ++layer) {
+    LabelVolume& volume = volumes.emplace_back(LabelVolume{nrrd.grid, std::move(layers[layer])});
+    nrrd.segments.give_names_and_colours(volume, static_cast<std::int64_t>(layer));
   }
   return volumes;
 }
 
-std::optional<RawVolume> find_nrrd(const HeaderBytes& head, const std::string& name) {
+std::optional<RawVolume> find_nrrd(const HeaderBytes& head, const std::string& name, VoxelUse use) {
   // An empty line ends a header before voxels.
   if (!head.whole_file() && head.bytes.find("\n\n") == std::string_view::npos &&
       head.bytes.find("\n\r\n") == std::string_view::npos)
     return std::nullopt;
   TextScanner in(head.bytes, name);
-  const NrrdFile nrrd(in, max_source_voxels);
+  const NrrdFile nrrd(in, max_source_voxels, content_for(use));
   // Lines are found by reading, and are unusual before raw voxels.
   if (nrrd.encoding != NrrdEncoding::raw || nrrd.lines_to_skip != 0) return std::nullopt;
   nrrd.check_skip();
-  RawVolume found{nrrd.volume, name, in.offset(), nrrd.format};
+  RawVolume found{nrrd.grid, name, in.offset(), nrrd.format, nrrd.channels};
   found.format.swap = is_swapped(nrrd.fields, nrrd.format.type);
   std::uint64_t size = head.file_size;
   if (nrrd.detached) {
@@ -387,7 +405,8 @@ std::optional<RawVolume> find_nrrd(const HeaderBytes& head, const std::string& n
     size = data_file_size(nrrd.fields, nrrd.data_field);
   }
   if (nrrd.bytes_to_skip == -1)
-    found.offset += offset_from_end(size - found.offset, found.grid.size, found.format.type);
+    found.offset +=
+        offset_from_end(size - found.offset, found.grid.size, found.format.type, nrrd.channels.count);
   else if (static_cast<std::uint64_t>(nrrd.bytes_to_skip) > size - found.offset)
     nrrd.fields.fail(nrrd.skip_field, std::to_string(nrrd.bytes_to_skip) +
                                           " bytes to skip, but the data have " +

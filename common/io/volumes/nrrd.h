@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/io/volumes/data_file.h"
+#include "common/io/volumes/encoded_volume.h"
 #include "common/io/volumes/raw_volume.h"
 #include "tetwright/files.h"
 #include "tetwright/label_source.h"
@@ -15,16 +16,19 @@ namespace tetwright {
 
 class Progress;
 
-/// Reads an NRRD volume: raw, gzip or text, attached to its header or in a separate file. If there are more
-/// than three axes, those of size 1 are dropped. Labels get the names of 3D Slicer's segments (.seg.nrrd);
-/// segments in several layers are rejected with advice, see
-/// read_nrrd_layers().
+/// Opens an NRRD volume: raw, gzip or text, attached to its header or in a separate file. If there are more
+/// than three axes, those of size 1 are dropped, and an image may have an axis of channels, which is not
+/// spatial: its kind is none of domain and space, or its direction none. Labels get the names of 3D Slicer's
+/// segments (.seg.nrrd); segments in several layers are rejected with advice, see read_nrrd_layers().
 ///
 /// No library is used: libteem, which defines the format, has had no release since 2012, reads through a FILE
 /// and allocates as much memory as the header promises.
-/// \param name file name for messages
 /// \param read reads the separate file
 /// \throws InputError with the line of the header for malformed contents
+EncodedVolume open_nrrd(std::string_view bytes, const std::string& name, const FileReader& read,
+                        VoxelUse use);
+
+/// Reads the labels of an NRRD volume.
 LabelVolume read_nrrd(std::string_view bytes, const std::string& name,
                       const FileReader& read = read_whole_file);
 
@@ -37,7 +41,8 @@ std::vector<LabelVolume> read_nrrd_layers(std::string_view bytes, const std::str
                                           const FileReader& read = read_whole_file);
 
 /// RawVolumeFinder of NRRD.
-std::optional<RawVolume> find_nrrd(const HeaderBytes& head, const std::string& name);
+std::optional<RawVolume> find_nrrd(const HeaderBytes& head, const std::string& name,
+                                   VoxelUse use = VoxelUse::labels);
 
 /// Content of an NRRD file: attached, gzip, in the smallest integer type that holds all labels. Origin and
 /// directions round-trip bit by bit.

@@ -148,7 +148,7 @@ HeaderFields read_nrrd_header(TextScanner& in, NrrdSegments& segments) {
   return header;
 }
 
-VoxelType nrrd_voxel_type(const HeaderFields& header) {
+VoxelType nrrd_voxel_type(const HeaderFields& header, VoxelUse use) {
   constexpr std::array<std::pair<std::string_view, VoxelType>, 32> names{
       {{"signed char", VoxelType::int8},
        {"int8", VoxelType::int8},
@@ -190,8 +190,8 @@ VoxelType nrrd_voxel_type(const HeaderFields& header) {
   // "long long" in all its spellings in C.
   if (type.find("long long") != std::string::npos || type == "longlong" || type == "ulonglong")
     return type[0] == 'u' ? VoxelType::uint64 : VoxelType::int64;
-  header.fail("type", "type " + in_quotes(type) +
-                          " of the voxels is not supported; save the labels as unsigned char, short or int");
+  header.fail("type", "type " + in_quotes(type) + " of the voxels is not supported; " +
+                          numbers_to_save(use, "save the labels as unsigned char, short or int"));
 }
 
 }  // namespace tetwright

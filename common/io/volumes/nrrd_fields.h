@@ -44,6 +44,6 @@ class NrrdSegments {
 HeaderFields read_nrrd_header(TextScanner& in, NrrdSegments& segments);
 
 /// Type of the voxels that a header names.
-VoxelType nrrd_voxel_type(const HeaderFields& header);
+VoxelType nrrd_voxel_type(const HeaderFields& header, VoxelUse use);
 
 }  // namespace tetwright

@@ -9,7 +9,7 @@
 
 #include "common/io/encodings/file_ranges.h"
 #include "common/io/volumes/voxel_data.h"
-#include "tetwright/label_source.h"
+#include "common/io/volumes/voxel_source.h"
 
 namespace tetwright {
 
@@ -19,6 +19,7 @@ struct RawVolume {
   std::string file;          ///< file with the voxels
   std::uint64_t offset = 0;  ///< of the first voxel, bytes
   VoxelFormat format;
+  ChannelAxis channels = {};
 };
 
 /// Bytes of a header that are read. Headers with the names of hundreds of segments have some 100 kB.
@@ -33,18 +34,20 @@ struct HeaderBytes {
 
 /// Finds the voxels of a volume from its header. The header's messages are those of the reader of the format.
 /// \return std::nullopt if the voxels are compressed or text, or the header is longer than `head`
-using RawVolumeFinder = std::optional<RawVolume> (*)(const HeaderBytes& head, const std::string& name);
+using RawVolumeFinder = std::optional<RawVolume> (*)(const HeaderBytes& head, const std::string& name,
+                                                     VoxelUse use);
 
 /// Offset of voxels that end at the end of their file, or 0 if the file is too short for them.
-std::uint64_t offset_from_end(std::uint64_t file_size, const std::array<int, 3>& size, VoxelType type);
+std::uint64_t offset_from_end(std::uint64_t file_size, const std::array<int, 3>& size, VoxelType type,
+                              std::int64_t channels = 1);
 
 /// Opens a volume that reads the ranges of its file that a box needs, and keeps nothing in memory.
 /// \throws InputError if the file with the voxels cannot be read or is too short, or there are more than
 ///   max_source_voxels
-std::unique_ptr<LabelSource> open_raw_volume(RawVolume volume);
+std::unique_ptr<VoxelSource> open_raw_volume(RawVolume volume);
 
 /// Finds and opens the volume.
 /// \return null if `find` finds none, or `path` is not a regular file
-std::unique_ptr<LabelSource> find_raw_volume(const std::string& path, RawVolumeFinder find);
+std::unique_ptr<VoxelSource> find_raw_volume(const std::string& path, RawVolumeFinder find, VoxelUse use);
 
 }  // namespace tetwright

@@ -46,7 +46,7 @@ std::string sample_text(std::uint16_t format, std::uint16_t bits) {
   return "samples of " + std::to_string(bits) + " bits (" + kind + ")";
 }
 
-VoxelType sample_type(std::uint16_t format, std::uint16_t bits, const std::string& page) {
+VoxelType sample_type(std::uint16_t format, std::uint16_t bits, const std::string& page, VoxelUse use) {
   if (format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_VOID) {
     if (bits == 8) return VoxelType::uint8;
     if (bits == 16) return VoxelType::uint16;
@@ -61,8 +61,8 @@ VoxelType sample_type(std::uint16_t format, std::uint16_t bits, const std::strin
     if (bits == 32) return VoxelType::float32;
     if (bits == 64) return VoxelType::float64;
   }
-  throw InputError(page + ": " + sample_text(format, bits) +
-                   " are not supported; save the labels as integers of 8, 16 or 32 bits");
+  throw InputError(page + ": " + sample_text(format, bits) + " are not supported; " +
+                   numbers_to_save(use, "save the labels as integers of 8, 16 or 32 bits"));
 }
 
 }  // namespace
@@ -117,7 +117,7 @@ void TiffFile::go_to(std::uint64_t offset) {
   if (TIFFSetSubDirectory(impl_->file, offset) != 1) impl_->fail(impl_->path, "a page is damaged");
 }
 
-TiffPage TiffFile::page(const std::string& page) const {
+TiffPage TiffFile::page(const std::string& page, VoxelUse use) const {
   TIFF* file = impl_->file;
   TiffPage shape;
   shape.width = field<std::uint32_t>(file, TIFFTAG_IMAGEWIDTH, 0);
@@ -128,13 +128,15 @@ TiffPage TiffFile::page(const std::string& page) const {
   if (samples != 1 || (colours != PHOTOMETRIC_MINISBLACK && colours != PHOTOMETRIC_MINISWHITE &&
                        colours != PHOTOMETRIC_PALETTE))
     throw InputError(page + ": it has " + std::to_string(samples) +
-                     " samples for each pixel, or colours; save the labels as a grey image of one channel");
+                     " samples for each pixel, or colours; save " +
+                     (use == VoxelUse::labels ? "the labels as a grey image of one channel"
+                                              : "each channel as a grey image in pages of its own"));
   if (const auto turn = field<std::uint16_t>(file, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT);
       turn != ORIENTATION_TOPLEFT)
     throw InputError(page + ": its orientation is " + std::to_string(turn) +
                      ", and only 1 (first row on top, first column left) is supported; save it again");
   shape.type = sample_type(field<std::uint16_t>(file, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT),
-                           field<std::uint16_t>(file, TIFFTAG_BITSPERSAMPLE, 1), page);
+                           field<std::uint16_t>(file, TIFFTAG_BITSPERSAMPLE, 1), page, use);
   shape.tiled = TIFFIsTiled(file) != 0;
   if (shape.tiled) {
     shape.piece_width = field<std::uint32_t>(file, TIFFTAG_TILEWIDTH, 0);

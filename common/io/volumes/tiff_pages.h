@@ -52,7 +52,7 @@ class TiffFile {
   /// Shape of the page.
   /// \param page its name for messages
   /// \throws InputError unless it has one sample of 8, 16, 32 or 64 bits for each pixel
-  TiffPage page(const std::string& page) const;
+  TiffPage page(const std::string& page, VoxelUse use) const;
   TiffDescription description() const;
 
   /// Reads a strip or tile of the page, in this machine's byte order.

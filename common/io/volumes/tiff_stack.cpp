@@ -18,6 +18,7 @@
 #include "common/io/volumes/raw_volume.h"
 #include "common/io/volumes/tiff_pages.h"
 #include "common/lower_case.h"
+#include "common/message_text.h"
 #include "common/trimmed.h"
 #include "tetwright/error.h"
 
@@ -57,16 +58,17 @@ struct StackPage {
 
 /// A stack of pages of one size and type.
 struct TiffStack {
-  std::vector<std::string> files;  ///< one with all pages, or one for each page
-  std::vector<StackPage> pages;
-  TiffDescription description;
+  std::vector<std::string> files = {};  ///< one with all pages, or one for each page
+  VoxelUse use;
+  std::vector<StackPage> pages = {};
+  TiffDescription description = {};
 
   std::string page_name(std::size_t page) const {
     return files.size() > 1 ? files[page] : files[0] + ": page " + std::to_string(page + 1);
   }
 
   void add(TiffFile& file, const std::string& name) {
-    const StackPage page{file.offset(), file.page(name)};
+    const StackPage page{file.offset(), file.page(name, use)};
     if (pages.size() == static_cast<std::size_t>(std::numeric_limits<int>::max()))
       throw InputError(name + ": it has more pages than a volume can have");
     if (pages.empty()) {
@@ -92,8 +94,8 @@ struct TiffStack {
   }
 };
 
-TiffStack pages_of_file(const std::string& path) {
-  TiffStack stack;
+TiffStack pages_of_file(const std::string& path, VoxelUse use) {
+  TiffStack stack{.use = use};
   stack.files.push_back(path);
   TiffFile file(path);
   do stack.add(file, stack.page_name(stack.pages.size()));
@@ -101,15 +103,15 @@ TiffStack pages_of_file(const std::string& path) {
   return stack;
 }
 
-TiffStack pages_of_folder(const std::string& path) {
-  TiffStack stack;
+TiffStack pages_of_folder(const std::string& path, VoxelUse use) {
+  TiffStack stack{.use = use};
   std::error_code error;
   for (fs::directory_iterator entry(path, error), end; !error && entry != end; entry.increment(error))
     if (is_tiff_file(*entry)) stack.files.push_back(entry->path().string());
   if (error) throw InputError("cannot read " + path + ": " + error.message());
   if (stack.files.empty()) throw InputError(path + ": there is no .tif file in the folder");
   std::sort(stack.files.begin(), stack.files.end(), natural_less);
-  if (stack.files.size() == 1) return pages_of_file(stack.files[0]);
+  if (stack.files.size() == 1) return pages_of_file(stack.files[0], use);
   for (const std::string& name : stack.files) {
     TiffFile file(name);
     stack.add(file, name);
@@ -121,14 +123,21 @@ TiffStack pages_of_folder(const std::string& path) {
   return stack;
 }
 
+/// The order of the pages of slices and channels.
+struct PageOrder {
+  std::int64_t channels = 1;
+  std::size_t slice_step = 1, channel_step = 0;  ///< pages from one to the next
+};
+
 class TiffStackSource final : public ChunkedSource {
  public:
-  TiffStackSource(LabelGrid grid, const ChunkLayout& layout, std::size_t cache_bytes, TiffStack stack)
-      : ChunkedSource(std::move(grid), layout, cache_bytes), stack_(std::move(stack)) {}
+  TiffStackSource(LabelGrid grid, const ChunkLayout& layout, std::size_t cache_bytes, TiffStack stack,
+                  const PageOrder& order)
+      : ChunkedSource(std::move(grid), layout, cache_bytes), stack_(std::move(stack)), order_(order) {}
 
  protected:
-  ByteBuffer load_chunk(const VoxelIndex& chunk) const override {
-    const auto page = static_cast<std::size_t>(chunk[2]);
+  ByteBuffer load_chunk(const ChunkNumber& chunk) const override {
+    const std::size_t page = page_of(chunk);
     ByteBuffer out(layout().bytes);
     TiffFile file = take_file(page);
     if (stack_.pages[page].shape.tiled)
@@ -141,13 +150,18 @@ class TiffStackSource final : public ChunkedSource {
     return out;
   }
 
-  std::string chunk_name(const VoxelIndex& chunk) const override {
-    return stack_.page_name(static_cast<std::size_t>(chunk[2]));
-  }
+  std::string chunk_name(const ChunkNumber& chunk) const override { return stack_.page_name(page_of(chunk)); }
 
-  MaterialTag fill_label(const VoxelIndex& /*chunk*/) const override { return 0; }  // no chunk is missing
+  // No chunk is missing.
+  MaterialTag fill_label(const ChunkNumber& /*chunk*/) const override { return 0; }
+  float fill_value(const ChunkNumber& /*chunk*/) const override { return 0; }
 
  private:
+  std::size_t page_of(const ChunkNumber& chunk) const {
+    return static_cast<std::size_t>(chunk[2]) * order_.slice_step +
+           static_cast<std::size_t>(chunk[3]) * order_.channel_step;
+  }
+
   /// An open file that no other thread uses, at the page.
   TiffFile take_file(std::size_t page) const {
     if (stack_.files.size() > 1) return TiffFile(stack_.files[page]);
@@ -164,7 +178,7 @@ class TiffStackSource final : public ChunkedSource {
     return std::move(*file);
   }
 
-  void read_tile(const TiffFile& file, const VoxelIndex& chunk, ByteBuffer& out) const {
+  void read_tile(const TiffFile& file, const ChunkNumber& chunk, ByteBuffer& out) const {
     const auto across = static_cast<std::uint32_t>((grid().size[0] - 1) / layout().size[0] + 1);
     file.read_piece(true,
                     static_cast<std::uint32_t>(chunk[1]) * across + static_cast<std::uint32_t>(chunk[0]),
@@ -172,10 +186,9 @@ class TiffStackSource final : public ChunkedSource {
   }
 
   /// Reads the strips that have rows in the chunk.
-  void read_strips(const TiffFile& file, const VoxelIndex& chunk, ByteBuffer& out) const {
+  void read_strips(const TiffFile& file, const ChunkNumber& chunk, ByteBuffer& out) const {
     const std::size_t row = layout().strides[1];
-    const std::int64_t height = grid().size[1],
-                       rows = stack_.pages[static_cast<std::size_t>(chunk[2])].shape.piece_height;
+    const std::int64_t height = grid().size[1], rows = stack_.pages[page_of(chunk)].shape.piece_height;
     const std::int64_t begin = std::int64_t{chunk[1]} * layout().size[1],
                        end = std::min(begin + layout().size[1], height);
     ByteBuffer apart;  // a strip that has rows of other chunks, too
@@ -195,6 +208,7 @@ class TiffStackSource final : public ChunkedSource {
   }
 
   TiffStack stack_;
+  PageOrder order_;
   mutable std::mutex mutex_;
   mutable std::vector<TiffFile> idle_;
 };
@@ -213,20 +227,53 @@ std::optional<double> imagej_number(std::string_view text, std::string_view key)
   return std::nullopt;
 }
 
-void check_one_channel(const std::string& path, const char* what, double n) {
-  if (n > 1)
-    throw InputError(path + ": it has " + std::to_string(static_cast<std::int64_t>(n)) + " " + what +
-                     ", and each voxel needs one label; save one of them as a stack");
+/// Element of OME-TIFF that describes the pixels; null if the description has none.
+pugi::xml_node ome_pixels(pugi::xml_document& document, const std::string& text) {
+  if (text.find("<OME") == std::string::npos || !document.load_string(text.c_str())) return {};
+  return document.child("OME").child("Image").child("Pixels");
+}
+
+/// Order of the pages of channels and slices that ImageJ or OME-TIFF describes.
+/// \throws InputError if there are several times, or several channels and labels are wanted
+PageOrder page_order(const std::string& path, const TiffStack& stack) {
+  const std::string& text = stack.description.text;
+  double channels = 1, times = 1;
+  bool slices_first = false;  // all slices of a channel before the next channel
+  pugi::xml_document document;
+  if (const pugi::xml_node pixels = ome_pixels(document, text)) {
+    channels = pixels.attribute("SizeC").as_double(1);
+    times = pixels.attribute("SizeT").as_double(1);
+    const std::string_view order = pixels.attribute("DimensionOrder").as_string();
+    slices_first = order.find('Z') < order.find('C');
+  } else if (text.starts_with("ImageJ=") || imagej_number(text, "spacing")) {
+    channels = imagej_number(text, "channels").value_or(1);
+    times = imagej_number(text, "frames").value_or(1);
+  }
+  const auto check_one = [&](const char* what, double n, bool image) {
+    if (!(n > 1)) return;
+    const std::string begin = path + ": it has " + short_number(n) + " " + what;
+    if (stack.use == VoxelUse::labels)
+      throw InputError(begin + ", and each voxel needs one label; save one of them as a stack");
+    if (!image) throw InputError(begin + ", and an image has one; save one of them as a stack");
+  };
+  check_one("channels", channels, true);
+  check_one("times", times, false);
+  PageOrder order;
+  if (!(channels > 1)) return order;
+  if (channels > static_cast<double>(max_channels) || channels != std::floor(channels))
+    throw InputError(path + ": " + short_number(channels) + " channels; an image has 1 to " +
+                     std::to_string(max_channels));
+  order.channels = static_cast<std::int64_t>(channels);
+  const auto n = static_cast<std::size_t>(order.channels);
+  order.slice_step = slices_first ? 1 : n;
+  order.channel_step = slices_first ? stack.pages.size() / n : 1;
+  return order;
 }
 
 /// Spacing of OME-TIFF, or std::nullopt if the description has none.
 std::optional<Vec3> ome_spacing(const std::string& path, const std::string& text) {
   pugi::xml_document document;
-  if (text.find("<OME") == std::string::npos || !document.load_string(text.c_str())) return std::nullopt;
-  const pugi::xml_node pixels = document.child("OME").child("Image").child("Pixels");
-  if (!pixels) return std::nullopt;
-  check_one_channel(path, "channels", pixels.attribute("SizeC").as_double());
-  check_one_channel(path, "times", pixels.attribute("SizeT").as_double());
+  const pugi::xml_node pixels = ome_pixels(document, text);
   if (!pixels.attribute("PhysicalSizeX")) return std::nullopt;
   Vec3 spacing;
   std::string unit;
@@ -252,8 +299,6 @@ std::optional<Vec3> spacing_of(const std::string& path, const TiffDescription& f
   if (std::optional<Vec3> ome = ome_spacing(path, first.text)) return ome;
   const std::optional<double> between = imagej_number(first.text, "spacing");
   if (first.text.starts_with("ImageJ=") || between) {
-    check_one_channel(path, "channels", imagej_number(first.text, "channels").value_or(1));
-    check_one_channel(path, "times", imagej_number(first.text, "frames").value_or(1));
     if (!between && !known(first.resolution_x)) return std::nullopt;
     // ImageJ takes the amount, too.
     const double z = between && *between != 0 ? std::fabs(*between) : 1;
@@ -267,25 +312,29 @@ std::optional<Vec3> spacing_of(const std::string& path, const TiffDescription& f
 /// ImageJ writes stacks of more than 4 GB as one page, which other pages without an entry follow.
 /// \return std::nullopt if the file has the first page alone
 /// \throws InputError if there are more voxels than a volume can have
-std::optional<RawVolume> follow_first_page(const TiffStack& stack, const LabelGrid& grid) {
+std::optional<RawVolume> follow_first_page(const TiffStack& stack, const LabelGrid& page,
+                                           std::int64_t channels) {
   const TiffDescription& first = stack.description;
   const auto images = imagej_number(first.text, "images");
   if (stack.pages.size() != 1 || !images || !first.text.starts_with("ImageJ=") || first.compressed ||
-      stack.pages[0].shape.tiled || !(*images > 1 && *images <= std::numeric_limits<int>::max()))
+      stack.pages[0].shape.tiled || !(*images > 1 && *images <= std::numeric_limits<int>::max()) ||
+      static_cast<std::int64_t>(*images) % channels != 0)
     return std::nullopt;
-  RawVolume raw{grid, stack.files[0], first.first_offset, {}};
+  RawVolume raw{page, stack.files[0], first.first_offset, {}, {channels, 2}};
   raw.format.type = stack.pages[0].shape.type;
-  const std::uint64_t page_bytes = voxel_data_bytes(grid.size, raw.format.type);
+  const std::uint64_t page_bytes = voxel_data_bytes(page.size, raw.format.type);
   const std::uint64_t file_size = FileRanges(raw.file).size();
   const std::uint64_t there = file_size > raw.offset ? file_size - raw.offset : 0;
   // A page that was cut from a stack may keep its description. Two images and more without the others are a
   // stack that is truncated.
   if (there / 2 < page_bytes) return std::nullopt;
-  const std::array<std::int64_t, 3> size{grid.size[0], grid.size[1], static_cast<std::int64_t>(*images)};
+  const std::array<std::int64_t, 3> size{page.size[0], page.size[1],
+                                         static_cast<std::int64_t>(*images) / channels};
   raw.grid.size = checked_size(size, raw.file, 0, max_source_voxels);
   // Nor do images follow each other where the page's entry is.
   const std::uint64_t directory = stack.pages[0].offset;
-  if (directory >= raw.offset && directory - raw.offset < voxel_data_bytes(raw.grid.size, raw.format.type))
+  if (directory >= raw.offset &&
+      directory - raw.offset < voxel_data_bytes(raw.grid.size, raw.format.type, channels))
     return std::nullopt;
   raw.format.swap = first.big_endian == little_endian_machine;
   return raw;
@@ -317,20 +366,27 @@ bool has_tiff_files(const std::string& folder) {
   return false;
 }
 
-std::unique_ptr<LabelSource> open_tiff_stack(const std::string& path, std::size_t cache_bytes) {
+std::unique_ptr<VoxelSource> open_tiff_stack(const std::string& path, std::size_t cache_bytes, VoxelUse use) {
   std::error_code error;
-  TiffStack stack = fs::is_directory(path, error) ? pages_of_folder(path) : pages_of_file(path);
+  TiffStack stack = fs::is_directory(path, error) ? pages_of_folder(path, use) : pages_of_file(path, use);
   const TiffPage& first = stack.pages[0].shape;
+  const PageOrder order = page_order(stack.files[0], stack);
   LabelGrid grid;
-  const std::array<std::int64_t, 3> size{first.width, first.height,
-                                         static_cast<std::int64_t>(stack.pages.size())};
+  const auto pages = static_cast<std::int64_t>(stack.pages.size());
+  std::array<std::int64_t, 3> size{first.width, first.height, pages};
   grid.size = checked_size(size, path, 0, max_source_voxels);
   if (const std::optional<Vec3> spacing = spacing_of(stack.files[0], stack.description))
     grid.directions = spacing->asDiagonal();
   else
     grid.spacing_assumed = true;
   check_geometry(grid, path);
-  if (std::optional<RawVolume> raw = follow_first_page(stack, grid)) return open_raw_volume(std::move(*raw));
+  if (std::optional<RawVolume> raw = follow_first_page(stack, grid, order.channels))
+    return open_raw_volume(std::move(*raw));
+  if (pages % order.channels != 0)
+    throw InputError(path + ": its " + std::to_string(pages) + " pages are not those of " +
+                     std::to_string(order.channels) + " channels; save it again");
+  size[2] = pages / order.channels;
+  grid.size = checked_size(size, path, 0, max_source_voxels);
   ChunkLayout layout;
   layout.format.type = first.type;
   const std::size_t each = voxel_bytes(first.type);
@@ -342,7 +398,8 @@ std::unique_ptr<LabelSource> open_tiff_stack(const std::string& path, std::size_
   layout.size = {static_cast<int>(first.piece_width), static_cast<int>(rows), 1};
   layout.strides = {each, first.piece_width * each, rows * first.piece_width * each};
   layout.bytes = layout.strides[2];
-  return std::make_unique<TiffStackSource>(std::move(grid), layout, cache_bytes, std::move(stack));
+  layout.channels = order.channels;
+  return std::make_unique<TiffStackSource>(std::move(grid), layout, cache_bytes, std::move(stack), order);
 }
 
 }  // namespace tetwright

@@ -5,7 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "tetwright/label_source.h"
+#include "common/io/volumes/voxel_data.h"
+#include "common/io/volumes/voxel_source.h"
 
 namespace tetwright {
 
@@ -14,9 +15,11 @@ namespace tetwright {
 ///
 /// Spacing is that of ImageJ (in its unit) or OME-TIFF if the first page has their description. Otherwise it
 /// follows from the resolution: in mm if that has a unit, and the same along the third axis. A resolution of
-/// 1 or none is a spacing of 1. \param cache_bytes decoded strips and tiles that are kept, bytes \throws
-/// InputError naming the page if pages differ in size or type, or are no grey images
-std::unique_ptr<LabelSource> open_tiff_stack(const std::string& path, std::size_t cache_bytes);
+/// 1 or none is a spacing of 1. An image may have the channels that ImageJ or OME-TIFF names, each in pages
+/// of its own. \param cache_bytes decoded strips and tiles that are kept, bytes \throws InputError naming the
+/// page if pages differ in size or type, or are no grey images
+std::unique_ptr<VoxelSource> open_tiff_stack(const std::string& path, std::size_t cache_bytes,
+                                             VoxelUse use = VoxelUse::labels);
 
 /// Whether a folder has a TIFF file.
 bool has_tiff_files(const std::string& folder);

@@ -42,20 +42,33 @@ std::vector<std::size_t> last_axes(std::span<const std::int64_t> shape) {
 
 }  // namespace
 
-std::array<std::size_t, 3> spatial_axes(std::span<const std::int64_t> shape,
-                                        std::span<const std::string> names, const std::string& file) {
+VolumeAxes volume_axes(std::span<const std::int64_t> shape, std::span<const std::string> names, VoxelUse use,
+                       const std::string& file) {
   if (shape.size() < 3)
-    throw InputError(file, 0, std::to_string(shape.size()) + " axes; a volume of labels has 3");
+    throw InputError(file, 0,
+                     std::to_string(shape.size()) + " axes; " + name_of_use(use) + " has 3" +
+                         (use == VoxelUse::image ? ", and one of channels if there are several" : ""));
   std::vector<std::size_t> axes;
-  if (names.size() == shape.size()) axes = axes_by_name(names);
+  const bool named = names.size() == shape.size();
+  if (named) axes = axes_by_name(names);
   if (axes.empty()) axes = last_axes(shape);
-  for (std::size_t k = 0; k < shape.size(); ++k)
-    if (shape[k] != 1 && std::find(axes.begin(), axes.end(), k) == axes.end())
+  VolumeAxes out{{axes[0], axes[1], axes[2]}, std::nullopt};
+  for (std::size_t k = 0; k < shape.size(); ++k) {
+    if (shape[k] == 1 || std::find(axes.begin(), axes.end(), k) != axes.end()) continue;
+    if (use == VoxelUse::labels)
       throw InputError(file, 0,
                        axis_text(names, k) + " has " + std::to_string(shape[k]) +
                            " items, and each voxel needs one label; save one of them (one time, one channel) "
                            "as an array of three axes");
-  return {axes[0], axes[1], axes[2]};
+    if (out.channel || (named && !names[k].empty() && names[k] != "c" && names[k] != "channel"))
+      throw InputError(file, 0,
+                       axis_text(names, k) + " has " + std::to_string(shape[k]) +
+                           " items beside three spatial axes" +
+                           (out.channel ? " and " + axis_text(names, *out.channel) : "") +
+                           ", and only one of channels (\"c\") is read; save one of its items");
+    out.channel = k;
+  }
+  return out;
 }
 
 std::vector<std::size_t> strides_of(std::span<const std::int64_t> shape, std::span<const std::size_t> order) {

@@ -14,6 +14,7 @@
 #include "common/io/volumes/tiff_stack.h"
 #include "common/io/volumes/zarr.h"
 #include "common/lower_case.h"
+#include "tetwright/error.h"
 #include "tetwright/files.h"
 
 namespace tetwright {
@@ -23,44 +24,40 @@ namespace {
 /// Chunks that are kept while a whole volume is read: each is needed once.
 constexpr std::size_t whole_volume_cache = std::size_t{1} << 24;
 
-LabelVolume read_inr_alone(std::string_view bytes, const std::string& name, const FileReader& /*others*/) {
-  return read_inr(bytes, name);
+std::unique_ptr<VoxelSource> open_zarr_path(const VolumePath& path, std::size_t cache_bytes, VoxelUse use) {
+  return open_zarr(path.file, cache_bytes, FileRanges::if_there, use);
 }
 
-std::unique_ptr<LabelSource> open_zarr_path(const VolumePath& path, std::size_t cache_bytes) {
-  return open_zarr(path.file, cache_bytes);
+std::unique_ptr<VoxelSource> open_tiff_path(const VolumePath& path, std::size_t cache_bytes, VoxelUse use) {
+  return open_tiff_stack(path.file, cache_bytes, use);
 }
 
-std::unique_ptr<LabelSource> open_tiff_path(const VolumePath& path, std::size_t cache_bytes) {
-  return open_tiff_stack(path.file, cache_bytes);
-}
-
-std::unique_ptr<LabelSource> open_hdf5_path(const VolumePath& path, std::size_t cache_bytes) {
-  return open_hdf5_volume(path.file, path.inside, cache_bytes);
+std::unique_ptr<VoxelSource> open_hdf5_path(const VolumePath& path, std::size_t cache_bytes, VoxelUse use) {
+  return open_hdf5_volume(path.file, path.inside, cache_bytes, use);
 }
 
 constexpr std::array<VolumeFormat, 15> formats_of_volumes{
     {{.extension = ".nrrd",
-      .read = read_nrrd,
+      .read = open_nrrd,
       .find = find_nrrd,
       .layers = nrrd_layers,
       .read_layers = read_nrrd_layers,
       .write = write_nrrd,
       .write_source = write_raw_nrrd},
      {.extension = ".nhdr",
-      .read = read_nrrd,
+      .read = open_nrrd,
       .find = find_nrrd,
       .layers = nrrd_layers,
       .read_layers = read_nrrd_layers,
       .one_file = false},
-     {.extension = ".mhd", .read = read_metaimage, .find = find_metaimage, .one_file = false},
-     {.extension = ".mha", .read = read_metaimage, .find = find_metaimage},
-     {.extension = ".nii", .read = read_nifti, .find = find_nifti},
-     {.extension = ".nii.gz", .read = read_nifti, .find = find_nifti},
-     {.extension = ".hdr", .read = read_nifti, .find = find_nifti, .one_file = false},
-     {.extension = ".img", .read = read_nifti, .find = find_nifti, .header = ".hdr", .one_file = false},
-     {.extension = ".inr", .read = read_inr_alone},
-     {.extension = ".inr.gz", .read = read_inr_alone},
+     {.extension = ".mhd", .read = open_metaimage, .find = find_metaimage, .one_file = false},
+     {.extension = ".mha", .read = open_metaimage, .find = find_metaimage},
+     {.extension = ".nii", .read = open_nifti, .find = find_nifti},
+     {.extension = ".nii.gz", .read = open_nifti, .find = find_nifti},
+     {.extension = ".hdr", .read = open_nifti, .find = find_nifti, .one_file = false},
+     {.extension = ".img", .read = open_nifti, .find = find_nifti, .header = ".hdr", .one_file = false},
+     {.extension = ".inr", .read = open_inr},
+     {.extension = ".inr.gz", .read = open_inr},
      {.extension = ".zarr", .open = open_zarr_path},
      {.extension = ".tif", .open = open_tiff_path},
      {.extension = ".tiff", .open = open_tiff_path},
@@ -100,11 +97,11 @@ VolumePath volume_path(const std::string& path) {
 
 std::span<const VolumeFormat> volume_formats() { return formats_of_volumes; }
 
-std::unique_ptr<LabelSource> open_by_boxes(const VolumeFormat& format, const std::string& path,
-                                           std::size_t cache_bytes) {
-  if (format.open) return format.open(volume_path(path), cache_bytes);
+std::unique_ptr<VoxelSource> open_by_boxes(const VolumeFormat& format, const std::string& path,
+                                           std::size_t cache_bytes, VoxelUse use) {
+  if (format.open) return format.open(volume_path(path), cache_bytes, use);
   if (!format.find) return nullptr;
-  return find_raw_volume(format.header ? with_extension(path, format.header) : path, format.find);
+  return find_raw_volume(format.header ? with_extension(path, format.header) : path, format.find, use);
 }
 
 std::int64_t layers_of(const VolumeFormat& format, const std::string& path) {
@@ -115,10 +112,27 @@ std::int64_t layers_of(const VolumeFormat& format, const std::string& path) {
   return format.layers({head.view(), file.size()}, path);
 }
 
+EncodedVolume volume_of_bytes(const VolumeFormat& format, std::string_view bytes, const std::string& name,
+                              VoxelUse use) {
+  const auto others = [&](const std::string& other) -> std::string {
+    throw InputError(name, 0, "its voxels are in another file, " + other + "; give the header's name");
+  };
+  return format.read(bytes, name, others, use);
+}
+
 LabelVolume read_whole_volume(const VolumeFormat& format, const std::string& path) {
   if (const auto source = open_by_boxes(format, path, whole_volume_cache)) return read_all(*source, path);
   const std::string first = format.header ? with_extension(path, format.header) : path;
-  return format.read(read_whole_file(first), first, read_whole_file);
+  const std::string bytes = read_whole_file(first);
+  return labels_of(format.read(bytes, first, read_whole_file, VoxelUse::labels));
+}
+
+ImageVolume read_whole_image(const VolumeFormat& format, const std::string& path) {
+  if (const auto source = open_by_boxes(format, path, whole_volume_cache, VoxelUse::image))
+    return read_all_values(*source, path);
+  const std::string first = format.header ? with_extension(path, format.header) : path;
+  const std::string bytes = read_whole_file(first);
+  return image_of(format.read(bytes, first, read_whole_file, VoxelUse::image));
 }
 
 }  // namespace tetwright

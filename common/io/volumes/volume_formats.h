@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/io/volumes/data_file.h"
+#include "common/io/volumes/encoded_volume.h"
 #include "common/io/volumes/raw_volume.h"
 #include "tetwright/files.h"
 #include "tetwright/label_source.h"
@@ -27,12 +28,13 @@ struct VolumePath {
 /// that of a folder: zarr arrays, also inside FOLDER.zarr, or TIFF files.
 VolumePath volume_path(const std::string& path);
 
-/// A format of segmented volumes. It is read as bytes, or opened by name.
+/// A format of volumes: labels or images. It is read as bytes, or opened by name.
 struct VolumeFormat {
   const char* extension;
-  LabelVolume (*read)(std::string_view bytes, const std::string& name, const FileReader& others) = nullptr;
+  VolumeReader read = nullptr;
   RawVolumeFinder find = nullptr;  ///< null: voxels are always read as a whole
-  std::unique_ptr<LabelSource> (*open)(const VolumePath& path, std::size_t cache_bytes) = nullptr;
+  std::unique_ptr<VoxelSource> (*open)(const VolumePath& path, std::size_t cache_bytes,
+                                       VoxelUse use) = nullptr;
   /// Number of layers of overlapping segments, and their reader; null: there is always one.
   std::int64_t (*layers)(const HeaderBytes& head, const std::string& name) = nullptr;
   std::vector<LabelVolume> (*read_layers)(std::string_view bytes, const std::string& name,
@@ -49,13 +51,21 @@ std::span<const VolumeFormat> volume_formats();
 
 /// Opens a volume that is read by boxes.
 /// \return null if the file can only be read as a whole, since it is compressed or text
-std::unique_ptr<LabelSource> open_by_boxes(const VolumeFormat& format, const std::string& path,
-                                           std::size_t cache_bytes);
+std::unique_ptr<VoxelSource> open_by_boxes(const VolumeFormat& format, const std::string& path,
+                                           std::size_t cache_bytes, VoxelUse use = VoxelUse::labels);
 
 /// Number of layers of overlapping segments; 1 for other files.
 std::int64_t layers_of(const VolumeFormat& format, const std::string& path);
 
+/// Opens a volume in a stream.
+/// \throws InputError if its voxels are in another file
+EncodedVolume volume_of_bytes(const VolumeFormat& format, std::string_view bytes, const std::string& name,
+                              VoxelUse use);
+
 /// Reads all labels, by boxes if possible.
 LabelVolume read_whole_volume(const VolumeFormat& format, const std::string& path);
+
+/// Reads all values of an image, by boxes if possible.
+ImageVolume read_whole_image(const VolumeFormat& format, const std::string& path);
 
 }  // namespace tetwright

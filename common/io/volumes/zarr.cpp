@@ -48,13 +48,14 @@ std::optional<std::string> metadata_text(const FileOpener& open, const std::stri
 class ZarrSource final : public ChunkedSource {
  public:
   ZarrSource(LabelGrid grid, const ChunkLayout& layout, std::size_t cache_bytes, ZarrArray array,
-             const std::array<std::size_t, 3>& axes, std::string folder, FileOpener open)
+             const VolumeAxes& axes, std::string folder, FileOpener open)
       : ChunkedSource(std::move(grid), layout, cache_bytes),
         array_(std::move(array)),
-        axes_(axes),
+        axes_(axes.spatial.begin(), axes.spatial.end()),
         folder_(std::move(folder)),
         open_(std::move(open)),
         indices_(std::max(cache_bytes / 8, min_index_bytes)) {
+    if (axes.channel) axes_.push_back(*axes.channel);
     in_shard_.assign(array_.shape.size(), 1);
     for (std::size_t k = 0; k < array_.shard.size(); ++k)
       in_shard_[k] = array_.shard[k] / array_.chunk.size[k];
@@ -65,14 +66,14 @@ class ZarrSource final : public ChunkedSource {
       chunks *= static_cast<std::uint64_t>(n);
     }
     index_bytes_ = static_cast<std::size_t>(chunks) * index_entry_bytes;
-    for (std::size_t k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < axes_.size(); ++k) {
       const std::int64_t size = array_.chunk.size[axes_[k]] * in_shard_[axes_[k]];
-      shards_along_[k] = (this->grid().size[k] - 1) / size + 1;
+      shards_along_[k] = (array_.shape[axes_[k]] - 1) / size + 1;
     }
   }
 
  protected:
-  ByteBuffer load_chunk(const VoxelIndex& chunk) const override {
+  ByteBuffer load_chunk(const ChunkNumber& chunk) const override {
     const std::unique_ptr<ByteRanges> file = open_(path_of(chunk));
     if (!file) return {};
     const std::string name = chunk_name(chunk);
@@ -86,7 +87,7 @@ class ZarrSource final : public ChunkedSource {
     return decoded(*file, offset, n, name);
   }
 
-  std::string chunk_name(const VoxelIndex& chunk) const override {
+  std::string chunk_name(const ChunkNumber& chunk) const override {
     std::string name = path_of(chunk);
     if (array_.shard.empty()) return name;
     std::string inner;
@@ -95,22 +96,29 @@ class ZarrSource final : public ChunkedSource {
     return name + ": chunk " + inner;
   }
 
-  MaterialTag fill_label(const VoxelIndex& chunk) const override {
+  MaterialTag fill_label(const ChunkNumber& chunk) const override {
     if (!array_.fill)
       throw InputError(chunk_name(chunk) + " is missing, and the fill value " + in_quotes(array_.fill_text) +
                        " is not a label; copy the array again, or store 0 as its fill value");
     return *array_.fill;
   }
 
+  float fill_value(const ChunkNumber& chunk) const override {
+    if (!array_.fill_value)
+      throw InputError(chunk_name(chunk) + " is missing, and the fill value " + in_quotes(array_.fill_text) +
+                       " is not a finite number; copy the array again, or store a number as its fill value");
+    return *array_.fill_value;
+  }
+
  private:
   /// Number of a chunk along an axis of the file.
-  std::int64_t number_along(std::size_t axis, const VoxelIndex& chunk) const {
-    for (std::size_t k = 0; k < 3; ++k)
+  std::int64_t number_along(std::size_t axis, const ChunkNumber& chunk) const {
+    for (std::size_t k = 0; k < axes_.size(); ++k)
       if (axes_[k] == axis) return chunk[k];
     return 0;
   }
 
-  std::string path_of(const VoxelIndex& chunk) const {
+  std::string path_of(const ChunkNumber& chunk) const {
     std::string key;
     for (std::size_t k = 0; k < array_.shape.size(); ++k) {
       if (k) key += array_.separator;
@@ -129,9 +137,9 @@ class ZarrSource final : public ChunkedSource {
   }
 
   /// Offset and length of a chunk in its shard.
-  std::pair<std::uint64_t, std::uint64_t> entry_of(const VoxelIndex& chunk, const ByteRanges& file) const {
+  std::pair<std::uint64_t, std::uint64_t> entry_of(const ChunkNumber& chunk, const ByteRanges& file) const {
     std::uint64_t shard = 0;
-    for (std::size_t k = 3; k-- > 0;)
+    for (std::size_t k = axes_.size(); k-- > 0;)
       shard = shard * static_cast<std::uint64_t>(shards_along_[k]) +
               static_cast<std::uint64_t>(chunk[k] / in_shard_[axes_[k]]);
     const ChunkCache::Chunk index = indices_.get(shard, [&] { return read_index(file); });
@@ -155,11 +163,11 @@ class ZarrSource final : public ChunkedSource {
   }
 
   ZarrArray array_;
-  std::array<std::size_t, 3> axes_;  ///< x, y and z in the file
+  std::vector<std::size_t> axes_;  ///< x, y and z in the file, and that of channels if it has one
   std::string folder_;
   FileOpener open_;
   std::vector<std::int64_t> in_shard_;  ///< chunks of a file along each axis of the file
-  std::array<std::int64_t, 3> shards_along_{};
+  std::array<std::int64_t, 4> shards_along_{};
   std::size_t index_bytes_ = 0;
   mutable ChunkCache indices_;  ///< of shards
 };
@@ -240,14 +248,15 @@ OpenedArray find_array(const FileOpener& open, const std::string& path) {
 
 }  // namespace
 
-std::unique_ptr<LabelSource> open_zarr(const std::string& path, std::size_t cache_bytes,
-                                       const FileOpener& open) {
+std::unique_ptr<VoxelSource> open_zarr(const std::string& path, std::size_t cache_bytes,
+                                       const FileOpener& open, VoxelUse use) {
   OpenedArray opened = find_array(open, path);
   ZarrArray& array = opened.array;
   const std::size_t axes = array.shape.size();
   const std::vector<std::string>& names =
       opened.axis_names.size() == axes ? opened.axis_names : array.axis_names;
-  const std::array<std::size_t, 3> spatial = spatial_axes(array.shape, names, opened.folder);
+  const VolumeAxes chosen = volume_axes(array.shape, names, use, opened.folder);
+  const std::array<std::size_t, 3>& spatial = chosen.spatial;
   LabelGrid grid;
   std::array<std::int64_t, 3> size;
   for (std::size_t k = 0; k < 3; ++k) size[k] = array.shape[spatial[k]];
@@ -274,7 +283,13 @@ std::unique_ptr<LabelSource> open_zarr(const std::string& path, std::size_t cach
     layout.size[k] = static_cast<int>(array.chunk.size[spatial[k]]);
     layout.strides[k] = strides[spatial[k]] * each;
   }
-  return std::make_unique<ZarrSource>(std::move(grid), layout, cache_bytes, std::move(array), spatial,
+  if (chosen.channel) {
+    layout.channels = array.shape[*chosen.channel];
+    check_channels(layout.channels, grid.size, use, opened.folder, 0, max_source_voxels);
+    layout.chunk_channels = array.chunk.size[*chosen.channel];
+    layout.channel_stride = strides[*chosen.channel] * each;
+  }
+  return std::make_unique<ZarrSource>(std::move(grid), layout, cache_bytes, std::move(array), chosen,
                                       opened.folder, open);
 }
 

@@ -93,7 +93,7 @@ std::vector<std::size_t> column_major_order(std::size_t axes) {
   return order;
 }
 
-/// Sets the label of missing chunks.
+/// Sets the label and value of missing chunks.
 void take_fill(const json& value, ZarrArray& array) {
   array.fill_text = value_text(value);
   if (value.is_null()) {
@@ -104,7 +104,10 @@ void take_fill(const json& value, ZarrArray& array) {
     const auto number = value.get<double>();
     if (number == std::floor(number) && std::fabs(number) <= std::numeric_limits<MaterialTag>::max())
       array.fill = static_cast<MaterialTag>(number);
+    if (std::fabs(number) <= static_cast<double>(std::numeric_limits<float>::max()))
+      array.fill_value = static_cast<float>(number);
   }
+  if (array.fill && !array.fill_value) array.fill_value = static_cast<float>(*array.fill);
 }
 
 /// Type of items "<u2" (NumPy's typestr).

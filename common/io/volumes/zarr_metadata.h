@@ -30,6 +30,8 @@ struct ZarrArray {
   VoxelFormat format;
   /// Label of items that no chunk has; std::nullopt if the fill value is not a label.
   std::optional<MaterialTag> fill;
+  /// Value of such items in an image; std::nullopt if it is not a finite 32-bit float.
+  std::optional<float> fill_value;
   std::string fill_text;                ///< the fill value for messages
   std::string key_prefix;               ///< of the keys of chunks: "c/" or nothing
   char separator = '.';                 ///< between the numbers in the keys of chunks

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "tetwright/files.h"
+#include "tetwright/image_volume.h"
 #include "tetwright/label_source.h"
 #include "tetwright/label_volume.h"
 #include "tetwright/partition.h"
@@ -310,6 +311,16 @@ std::string file_stem(const std::string& path);
 TriangleMesh read_surface(const std::string& path, std::vector<Dropped>* dropped = nullptr);
 ReadTetMesh read_tet_mesh(const std::string& path, const ReadTetMeshOptions& options = {});
 LabelVolume read_label_volume(const std::string& path);
+/// Reads the values of an image: gray values, distances or probabilities, in all formats of volumes. NIfTI's
+/// slope and intercept are applied. The values are rounded to 32-bit floats.
+///
+/// Channels are the items of NIfTI's axis of times or vectors, of NRRD's axis of a kind that is not spatial
+/// (list, vector), of the axis "c" of zarr and HDF5 or the first of four axes without names, MetaImage's and
+/// INR's numbers of a voxel, and channels of ImageJ and OME-TIFF.
+/// \throws InputError also at the first value that is not finite, and if the file is a segmentation whose
+///   segments overlap
+/// \throws OutputError if the values, 4 bytes for each voxel and channel, exceed available_memory()
+ImageVolume read_image(const std::string& path);
 
 /// Number of layers of a segmentation whose segments overlap (.seg.nrrd of 3D Slicer), from its header; 1 for
 /// other volumes.
@@ -353,6 +364,7 @@ ReadTetMesh read_tet_mesh_bytes(std::string_view bytes, const std::string& name,
                                 const ReadTetMeshOptions& options = {});
 LabelVolume read_label_volume_bytes(std::string_view bytes, const std::string& name,
                                     const std::string& extension);
+ImageVolume read_image_bytes(std::string_view bytes, const std::string& name, const std::string& extension);
 
 /// Extensions that can be read from streams, such as ".ply .obj", and whether `extension` is one of them.
 std::string streamed_extensions();

@@ -260,6 +260,19 @@ TEST_F(TiffStacks, StacksOfImageJWithOneEntry) {
   }
 }
 
+TEST_F(TiffStacks, ChannelsOfStacksOfImageJWithOneEntry) {
+  const LabelVolume pages = numbered_volume({37, 29, 10});
+  put(path("a.tif"), one_entry(pages, std::string("ImageJ=1.53t\nimages=10\nchannels=2\n\0", 35), false));
+  const ImageVolume image = read_image(path("a.tif"));
+  ASSERT_EQ(image.size, (VoxelIndex{37, 29, 5}));
+  ASSERT_EQ(image.channels.size(), 2u);
+  for (int page = 0; page < 10; ++page) {
+    const std::vector<MaterialTag> expected = slice_of(pages, page).labels;
+    const auto begin = image.channels[static_cast<std::size_t>(page % 2)].begin() + page / 2 * 37 * 29;
+    EXPECT_EQ(std::vector<MaterialTag>(begin, begin + 37 * 29), expected) << page;
+  }
+}
+
 TEST_F(TiffStacks, PagesCutFromStacksOfImageJAreReadAlone) {
   const LabelVolume page = slice_of(numbered_volume(size), 0);
   put(path("a.tif"), one_entry(page, std::string("ImageJ=1.53t\nimages=50\nslices=50\n\0", 34), false));
