@@ -53,8 +53,9 @@ std::vector<double> bounds_of(const BinRule& rule, double low, double high) {
     bounds.push_back(infinity);
     return bounds;
   }
-  const auto count = static_cast<double>(rule.count);
-  for (std::size_t i = 0; i < rule.count; ++i)
+  const std::size_t bins = low < high ? rule.count : 1;
+  const auto count = static_cast<double>(bins);
+  for (std::size_t i = 0; i < bins; ++i)
     bounds.push_back(low + (high - low) * (static_cast<double>(i) / count));
   bounds.push_back(high);
   return bounds;
@@ -104,7 +105,8 @@ TetBins bin_tets(const TetMesh& mesh, const std::string& field, const std::vecto
   for (std::size_t i = 0; i < all.size(); ++i) {
     ValueBin& bin = all[i];
     if (bin.tets == 0) continue;
-    bin.mean = bin.volume > 0 ? bin.mean / bin.volume : plain[i];
+    // Rounding must not bring the mean outside the bin.
+    bin.mean = std::clamp(bin.volume > 0 ? bin.mean / bin.volume : plain[i], bin.low, bin.high);
     bin.name = names.add(numbered(material_name(mesh, bin.material), bin.number));
     kept[i] = static_cast<std::uint32_t>(result.bins.size());
     result.bins.push_back(std::move(bin));

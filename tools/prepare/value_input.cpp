@@ -16,15 +16,6 @@ namespace tetwright {
 
 namespace {
 
-// TEMPORARY until the readers of images are merged.
-ImageVolume read_image(const std::string& path) {
-  const LabelVolume v = read_label_volume(path);
-  ImageVolume image;
-  static_cast<LabelGrid&>(image) = v;
-  image.channels.emplace_back(v.labels.begin(), v.labels.end());
-  return image;
-}
-
 /// Space of the result's coordinates; empty: unknown.
 std::string space_of_mesh(const PrepareReport& report) { return report.volume ? report.volume->space : ""; }
 

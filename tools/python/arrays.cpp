@@ -181,8 +181,7 @@ void set_grid(const std::string& name, const char* what, const py::array& labels
               LabelGrid& volume) {
   if (labels.ndim() != 3 || labels.size() == 0)
     throw InputError(
-        name, 0,
-        std::string(what) + " an array of shape " + shape_text(labels) + "; give one of three axes");
+        name, 0, std::string(what) + " an array of shape " + shape_text(labels) + "; give one of three axes");
   for (std::size_t a = 0; a < 3; ++a) {
     const py::ssize_t count = labels.shape(static_cast<py::ssize_t>(a));
     if (count > std::numeric_limits<int>::max())

@@ -309,12 +309,11 @@ PYBIND11_MODULE(_core, module) {
              to.masks[name] =
                  std::make_shared<const LabelVolume>(to_volume(name, labels, origin, directions));
            })
-      .def("add_image",
-           [](NamedInputs& to, const std::string& name, const Image& values,
-              const std::array<double, 3>& origin, const std::array<std::array<double, 3>, 3>& directions) {
-             to.images[name] =
-                 std::make_shared<const ImageVolume>(to_image(name, values, origin, directions));
-           });
+      .def("add_image", [](NamedInputs& to, const std::string& name, const Image& values,
+                           const std::array<double, 3>& origin,
+                           const std::array<std::array<double, 3>, 3>& directions) {
+        to.images[name] = std::make_shared<const ImageVolume>(to_image(name, values, origin, directions));
+      });
 
   bind_mesh(module);
 

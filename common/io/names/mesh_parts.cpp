@@ -126,7 +126,7 @@ std::string comment_on_bin(const ValueBin& bin, const std::string& field) {
     text += ", ";
   }
   append_number(text, bin.tets);
-  return text + " tets";
+  return text + (bin.tets == 1 ? " tet" : " tets");
 }
 
 std::string plain_name(const std::string& name, std::size_t longest) {

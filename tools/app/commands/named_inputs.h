@@ -24,7 +24,7 @@ struct SizesObject {
 /// name in full, and it may become a material's name. A name that is not listed is a file.
 struct NamedInputs {
   std::map<std::string, Input::Value> values;
-  std::map<std::string, SizesObject> sizes;  ///< sources for --size-field
+  std::map<std::string, SizesObject> sizes;                          ///< sources for --size-field
   std::map<std::string, std::shared_ptr<const ImageVolume>> images;  ///< for --values
   std::map<std::string, std::shared_ptr<const LabelVolume>> masks;   ///< for --values-mask
 };
