@@ -394,7 +394,7 @@ void add_improve(CLI::App& app, CommandLine& c) {
 }
 
 void add_values(CLI::App& app, CommandLine& c) {
-  app.add_option("MESH", c.inputs, meshes())->required()->expected(1);
+  app.add_option("MESH", c.inputs, meshes())->required()->expected(1)->allow_extra_args(false);
   app.add_option_function<std::vector<std::string>>(
          "IMAGE",
          [&c](const std::vector<std::string>& all) {

@@ -30,7 +30,7 @@ UNITS = {
     "--voxels": "voxels", "--grains": "grains", "--layer": "input units", "--region": "input units", "--cap": "input units", "--contact-tolerance": "input units, or % of the diagonal", "--extend": "input units, or % of the diagonal",
     "--base": "input units", "--thicken": "input units, or % of the diagonal", "--min-voxels": "voxels", "--outside-label": "label", "--labels": "labels", "--order": "", "--parts": "parts", "--jobs": "jobs",
 }
-COMMANDS_ORDER = ("prepare", "mesh", "simplify", "improve", "check", "batch", "sample")
+COMMANDS_ORDER = ("prepare", "mesh", "simplify", "improve", "values", "check", "batch", "sample")
 
 
 class Program:
