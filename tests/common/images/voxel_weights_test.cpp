@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "tests/common/images/images.h"
@@ -78,13 +79,13 @@ TEST(VoxelWeights, PartsOfTheBoxAddUpWhereverTheyAreCut) {
 
 TEST(VoxelWeights, SharesOfTetsInsideTheImageSumToTheirVolumeAndAreNotNegative) {
   Random random(4);
-  const std::array<int, 3> size{60, 60, 60};
+  const std::array<int, 3> size{56, 52, 54};
   for (const double edge : {0.01, 0.1, 0.5, 1.0, 3.0, 10.0, 50.0})
-    for (int trial = 0; trial < (edge > 5 ? 3 : 100); ++trial) {
+    for (int trial = 0; trial < (edge > 5 ? 1 : 20); ++trial) {
       const std::array<Vec3, 4> tet = random_tet(
           random,
-          Vec3(29.5, 29.5, 29.5) +
-              (55 - edge) / 2 * Vec3(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5),
+          Vec3(27.5, 25.5, 26.5) +
+              (51 - edge) / 2 * Vec3(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5),
           edge);
       VoxelWeights::Measures measures;
       const std::vector<double> shares = shares_of(tet, size, &measures);
@@ -92,21 +93,21 @@ TEST(VoxelWeights, SharesOfTetsInsideTheImageSumToTheirVolumeAndAreNotNegative) 
       EXPECT_NEAR(measures.volume / volume, 1, 1e-14);
       EXPECT_NEAR(measures.inside / volume, 1, 1e-9) << edge;
       EXPECT_NEAR(std::accumulate(shares.begin(), shares.end(), 0.0) / volume, 1, 1e-9) << edge;
-      for (const double share : shares) EXPECT_GE(share, -1e-9 * volume);
+      EXPECT_GE(*std::min_element(shares.begin(), shares.end()), -1e-9 * volume);
     }
 }
 
 TEST(VoxelWeights, SharesAreTheIntegralsOfTheWeights) {
   Random random(5);
-  for (int trial = 0; trial < 6; ++trial) {
-    const std::array<Vec3, 4> tet = random_tet(random, Vec3(2, 1.5, 2.5), trial < 3 ? 1.5 : 6);
+  for (int trial = 0; trial < 4; ++trial) {
+    const std::array<Vec3, 4> tet = random_tet(random, Vec3(2, 1.5, 2.5), trial < 2 ? 1.5 : 6);
     VoxelWeights::Measures measures;
     const std::vector<double> shares = shares_of(tet, grid_size, &measures);
-    for (int voxel = 0; voxel < 120; voxel += 7) {
+    for (int voxel = 0; voxel < 120; voxel += 17) {
       const ImageVolume hat =
           image_of(grid_size, [&](int x, int y, int z) { return (z * 4 + y) * 5 + x == voxel; });
       const double expected =
-          measures.volume * mean_by_parts([&](const Vec3& p) { return trilinear(hat, p); }, tet, 5);
+          measures.volume * mean_by_parts([&](const VoxelPoint& p) { return trilinear(hat, p); }, tet);
       EXPECT_NEAR(shares[static_cast<std::size_t>(voxel)], expected, 2e-3 * measures.volume);
     }
   }
@@ -114,16 +115,18 @@ TEST(VoxelWeights, SharesAreTheIntegralsOfTheWeights) {
 
 TEST(VoxelWeights, PartsOutsideTheImageHaveNoShare) {
   Random random(6);
-  for (int trial = 0; trial < 20; ++trial) {
+  for (int trial = 0; trial < 9; ++trial) {
     const Vec3 centre(trial % 3 == 0 ? -1 : 4, trial % 3 == 1 ? -0.5 : 3, trial % 3 == 2 ? 6 : 0);
     const std::array<Vec3, 4> tet = random_tet(random, centre, 3);
     VoxelWeights::Measures measures;
     (void)shares_of(tet, grid_size, &measures);
     const double inside = mean_by_parts(
-        [&](const Vec3& p) {
-          return (p.array() >= -0.5).all() && p.x() <= 4.5 && p.y() <= 3.5 && p.z() <= 5.5 ? 1.0 : 0.0;
+        [](const VoxelPoint& p) {
+          return p[0] >= -0.5 && p[1] >= -0.5 && p[2] >= -0.5 && p[0] <= 4.5 && p[1] <= 3.5 && p[2] <= 5.5
+                     ? 1.0
+                     : 0.0;
         },
-        tet, 6);
+        tet);
     EXPECT_NEAR(measures.inside / measures.volume, inside, 0.01);
   }
   VoxelWeights::Measures measures;
