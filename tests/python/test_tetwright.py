@@ -128,7 +128,8 @@ def test_values_of_images_are_those_of_the_program(tmp_path):
         assert np.array_equal(again.tets, mesh.tets) and np.allclose(again.fields["g"], expected, atol=1e-4)
     masked = tetwright.values(arrays, {"g": gray}, affine=affine, values_mask=(gray > 100).astype(int))
     assert masked.fields["g"].min() >= 100.5
-    assert tetwright.improve(mesh, values={"g": tmp_path / "gray.nrrd"}).fields["g"].shape == (len(mesh.tets),)
+    better = tetwright.improve(mesh, values={"g": tmp_path / "gray.nrrd"})
+    assert better.fields["g"].shape == (len(better.tets),)
     with pytest.raises(tetwright.InputError, match="no part of the image is in the mesh"):
         tetwright.values(arrays, {"g": gray}, origin=(500, 0, 0))
     with pytest.raises(tetwright.UsageError, match="give a dict from names of fields to images"):

@@ -84,7 +84,7 @@ TEST(Bins, Msh22HasAGroupForEachBin) {
   const Binned binned;
   const std::string text = write_msh(binned.written());
   expect_parts(
-      text, {"3 10 \"bone_001\"\n", "3 11 \"bone_002\"\n", "3 12 \"plate_001\"\n", "2 3 \"bone|plate\"\n"});
+      text, {"3 10 \"bone_001\"\n", "3 11 \"bone_002\"\n", "3 12 \"plate_001\"\n", "2 2 \"bone|plate\"\n"});
   const ReadTetMesh read = read_msh(text, "a.msh");
   EXPECT_EQ(read.mesh.materials, (std::vector<MaterialTag>{10, 11, 12}));
 }
