@@ -79,7 +79,7 @@ void add_statistics(CLI::App& app, CommandLine& c) {
          },
          "Further fields of the values in each tet, NAME_min, NAME_max, NAME_deviation: any of "
          "min,max,deviation")
-      ->type_name("LIST");
+      ->type_name("NAMES");
 }
 
 }  // namespace
