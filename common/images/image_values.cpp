@@ -40,6 +40,13 @@ Box3 box_of(const LabelGrid& grid) {
   return box;
 }
 
+InputError elsewhere(const LabelGrid& image, const Box3& box, const std::string& image_name,
+                     const std::string& other) {
+  return {image_name, 0,
+          "no part of the image is in " + other + ": the image reaches from " + box_text(box_of(image)) +
+              ", that from " + box_text(box) + "; check origin, spacing, unit and coordinate system of both"};
+}
+
 /// Weighted statistics of voxels.
 class VoxelStatistics {
  public:
@@ -134,10 +141,7 @@ class Sampler {
       Box3 box;
       for (const Tet& tet : mesh_.tets)
         for (const Index p : tet) box.add(mesh_.points[p]);
-      throw InputError(image_name, 0,
-                       "no part of the image is in the mesh " + mesh_name + ": the image reaches from " +
-                           box_text(box_of(image_)) + ", the mesh from " + box_text(box) +
-                           "; check origin, spacing, unit and coordinate system of both");
+      throw elsewhere(image_, box, image_name, mesh_name);
     }
     take_points();
     take_nearest(image_name);
@@ -312,6 +316,12 @@ class Sampler {
 };
 
 }  // namespace
+
+void check_image_meets(const LabelGrid& image, const Vec3& low, const Vec3& high,
+                       const std::string& image_name, const std::string& other) {
+  const Box3 box{low, high};
+  if (!box.intersects(box_of(image))) throw elsewhere(image, box, image_name, other);
+}
 
 ImageValues image_values(const TetMesh& mesh, const ImageVolume& image, const ImageMask& mask,
                          const ImageValueOptions& options, const std::string& image_name,

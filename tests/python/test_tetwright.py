@@ -130,7 +130,7 @@ def test_values_of_images_are_those_of_the_program(tmp_path):
     assert masked.fields["g"].min() >= 100.5
     better = tetwright.improve(mesh, values={"g": tmp_path / "gray.nrrd"})
     assert better.fields["g"].shape == (len(better.tets),)
-    with pytest.raises(tetwright.InputError, match="no part of the image is in the mesh"):
+    with pytest.raises(tetwright.InputError, match="no part of the image is in mesh"):
         tetwright.values(arrays, {"g": gray}, origin=(500, 0, 0))
     with pytest.raises(tetwright.UsageError, match="give a dict from names of fields to images"):
         tetwright.values(arrays, gray)

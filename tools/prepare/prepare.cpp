@@ -40,9 +40,15 @@ void refer_to(const TetMesh& mesh, const char* name, const PrepareRun& run, Prep
   result.reference_name = name;
 }
 
-Prepared mesh_from_scans(std::vector<Input> inputs, PrepareRun& run) {
+ScanInput read_scan_with_images(std::vector<Input> inputs, const ValueInputs& images, PrepareRun& run) {
+  ScanInput scan = read_scan(std::move(inputs), run);
+  check_images_meet(images, box_of_scan(scan), run);
+  return scan;
+}
+
+Prepared mesh_from_scans(std::vector<Input> inputs, const ValueInputs& images, PrepareRun& run) {
   Prepared result;
-  DenseMesh dense = make_dense_mesh(read_scan(std::move(inputs), run), run);
+  DenseMesh dense = make_dense_mesh(read_scan_with_images(std::move(inputs), images, run), run);
   // The result for a segmented volume is compared with its dense mesh.
   if (!dense.surface)
     refer_to(run.original ? run.original->surface : dense.mesh, "the dense mesh", run, result);
@@ -61,9 +67,9 @@ Prepared mesh_from_scans(std::vector<Input> inputs, PrepareRun& run) {
   return result;
 }
 
-Prepared dense_mesh_from_scans(std::vector<Input> inputs, PrepareRun& run) {
+Prepared dense_mesh_from_scans(std::vector<Input> inputs, const ValueInputs& images, PrepareRun& run) {
   Prepared result;
-  DenseMesh dense = make_dense_mesh(read_scan(std::move(inputs), run), run);
+  DenseMesh dense = make_dense_mesh(read_scan_with_images(std::move(inputs), images, run), run);
   if (run.report.tolerance > 0) {
     run.progress.begin_stage("compare");
     run.report.deviation = deviation(dense.mesh, *dense.surface, &run.progress);
@@ -78,9 +84,12 @@ Prepared dense_mesh_from_scans(std::vector<Input> inputs, PrepareRun& run) {
   return result;
 }
 
-Prepared mesh_from_tets(std::vector<Input> inputs, PrepareRun& run) {
+Prepared mesh_from_tets(std::vector<Input> inputs, const ValueInputs& images, PrepareRun& run) {
   Prepared result;
   TetInput input = read_tets(std::move(inputs.front()), run);
+  Box3 box;
+  for (const Vec3& p : input.mesh.points) box.add(p);
+  check_images_meet(images, box, run);
   inputs.clear();
   const std::optional<SurfaceToFollow> surface = followed_interfaces(input.mesh, run);
   refer_to(input.mesh, "the mesh before", run, result);
@@ -116,11 +125,11 @@ Prepared carry_out(std::vector<Input> inputs, PrepareRun& run) {
   ValueInputs images = read_value_inputs(run);
   const bool of_scans = run.task == Task::prepare || run.task == Task::mesh;
   try {
-    result = run.task == Task::prepare ? mesh_from_scans(std::move(inputs), run)
-             : run.task == Task::mesh  ? dense_mesh_from_scans(std::move(inputs), run)
+    result = run.task == Task::prepare ? mesh_from_scans(std::move(inputs), images, run)
+             : run.task == Task::mesh  ? dense_mesh_from_scans(std::move(inputs), images, run)
              : run.task == Task::values
                  ? Prepared{.mesh = read_tets_unchanged(std::move(inputs.front()), run)}
-                 : mesh_from_tets(std::move(inputs), run);
+                 : mesh_from_tets(std::move(inputs), images, run);
   } catch (const OutOfTime&) {
     throw OutOfTime("out of time: after the " + short_number(run.options.limits.seconds.value_or(0)) +
                     " s of --time-limit there was no mesh yet (in stage '" + run.progress.stage() +

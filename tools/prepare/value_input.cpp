@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "common/message_text.h"
 #include "tetwright/error.h"
@@ -148,6 +149,31 @@ ValueInputs read_value_inputs(PrepareRun& run) {
     inputs.mask = options.mask ? options.mask
                                : std::make_shared<const LabelVolume>(read_label_volume(options.mask_file));
   return inputs;
+}
+
+void check_images_meet(const ValueInputs& inputs, const Box3& box, const PrepareRun& run) {
+  for (std::size_t i = 0; i < inputs.images.size(); ++i) {
+    LabelGrid grid = *inputs.images[i];
+    (void)change_space(grid, space_of_mesh(run.report));
+    check_image_meets(grid, box.low, box.high, run.options.values.images[i].file, run.report.inputs.front());
+  }
+}
+
+Box3 box_of_scan(const ScanInput& input) {
+  Box3 box;
+  if (const auto* surfaces = std::get_if<MesherInput>(&input)) {
+    for (const MesherInput::Body& body : surfaces->bodies)
+      for (const Vec3& p : body.surface.points) box.add(p);
+    return box;
+  }
+  const auto& labels = std::get<LabelInput>(input);
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3 index;
+    for (int a = 0; a < 3; ++a)
+      index[a] = (corner >> a & 1) ? labels.size[static_cast<std::size_t>(a)] - 0.5 : -0.5;
+    box.add(labels.origin + labels.directions * index);
+  }
+  return box;
 }
 
 std::shared_ptr<const LabelVolume> copy_labels(const LabelSource& source) {

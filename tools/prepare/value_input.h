@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "common/geometry/box_tree.h"
 #include "tetwright/image_volume.h"
 #include "tetwright/label_source.h"
 #include "tetwright/label_volume.h"
@@ -26,6 +27,15 @@ void check_value_options(Task task, const ValueOptions& options);
 ///
 /// \throws InputError in the cases of the readers, and if an image has several channels
 ValueInputs read_value_inputs(PrepareRun& run);
+
+/// Checks that the images meet the box of the input, so that a run with an image elsewhere ends before it
+/// meshes.
+///
+/// \throws InputError if one does not
+void check_images_meet(const ValueInputs& inputs, const Box3& box, const PrepareRun& run);
+
+/// Box of a scan: its surfaces, or all voxels.
+Box3 box_of_scan(const ScanInput& input);
 
 /// Keeps the labels of a segmented volume for ValueOptions::own_label.
 std::shared_ptr<const LabelVolume> copy_labels(const LabelSource& source);

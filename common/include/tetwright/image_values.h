@@ -66,6 +66,14 @@ struct ImageValues {
   double lowest = 0, highest = 0;  ///< of all voxels that are finite
 };
 
+/// Checks that the box around an image, with the outer halves of its voxels, meets another one.
+///
+/// \param low, high corners of the box of `other`, in the space of the image
+/// \param image_name, other names for the message
+/// \throws InputError if it does not, with both boxes
+void check_image_meets(const LabelGrid& image, const Vec3& low, const Vec3& high,
+                       const std::string& image_name, const std::string& other);
+
 /// Takes the values of an image for the tets and points of a mesh.
 ///
 /// The image is interpolated trilinearly between the centres of voxels and is constant in the outer halves of
