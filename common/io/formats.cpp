@@ -117,7 +117,8 @@ const typename Formats::value_type& need_format(const Formats& formats, const st
 
 TetFormatInfo info_of(const TetFormat& format) {
   return {format.name,        format.extension, format.names,        format.surfaces,
-          format.patch_names, format.fields,    format.second_order, static_cast<bool>(format.part_files)};
+          format.patch_names, format.fields,    format.second_order, static_cast<bool>(format.part_files),
+          format.bins,        format.moduli};
 }
 
 /// A format of several files replaces the path's extension by its own ones. The path must not have the

@@ -116,6 +116,44 @@ def test_labels_give_the_bytes_of_the_program(tmp_path):
     assert set(only.materials.tolist()) == {7}
 
 
+def test_values_of_images_are_those_of_the_program(tmp_path):
+    labels = labels_of_two_balls()
+    gray = 10.0 * np.indices((24, 24, 24))[0] + 0.5
+    header = b"dimension: 3\nsizes: 24 24 24\nencoding: raw\nendian: little\nspace dimension: 3\n" \
+             b"space directions: (2,0,0) (0,2,0) (0,0,3)\nspace origin: (1,2,3)\n\n"
+    for name, kind, data in (("v", b"uchar", labels), ("gray", b"float", gray.astype("<f4"))):
+        (tmp_path / f"{name}.nrrd").write_bytes(b"NRRD0004\ntype: " + kind + b"\n" + header + data.tobytes(order="F"))
+    run_program("prepare", tmp_path / "v.nrrd", "--target-tets", 900, "-o", tmp_path / "program.inp", "--values",
+                f"gray={tmp_path / 'gray.nrrd'}", "--values-mask", "labels", "--values-statistics", "min,max", "--bins",
+                "gray=3", "--modulus", "gray=2,1.5,0.1,1", "--min-modulus", 1)
+    options = dict(target_tets=900, values_mask="labels", values_statistics=["min", "max"], bins={"gray": 3},
+                   modulus={"gray": [2, 1.5, 0.1, 1]}, min_modulus=1)
+    mesh = tetwright.prepare(labels, spacing=(2, 2, 3), origin=(1, 2, 3), values={"gray": gray}, **options)
+    mesh.write(tmp_path / "python.inp")
+    assert (tmp_path / "python.inp").read_bytes() == (tmp_path / "program.inp").read_bytes()
+    assert (tmp_path / "python_bins.csv").read_text() == (tmp_path / "program_bins.csv").read_text()
+    assert set(mesh.fields) == {"gray", "gray_min", "gray_max", "gray_bin"} and set(mesh.point_fields) == {"gray"}
+    assert [b["name"] for b in mesh.stats["bins"]["each"]][0] == "label_1_001"
+    # On a mesh from elsewhere, by arrays, files and images of nibabel, and a mask.
+    centres = mesh.points[mesh.tets].mean(axis=1)
+    expected = 10 * (centres[:, 0] - 1) / 2 + 0.5
+    affine = np.diag([2, 2, 3, 1.0])
+    affine[:3, 3] = 1, 2, 3
+    arrays = (mesh.points, mesh.tets)
+    for image, placed in ((gray, dict(affine=affine)), (tmp_path / "gray.nrrd", {}),
+                          (types.SimpleNamespace(affine=affine, dataobj=gray), {})):
+        again = tetwright.values(arrays, {"g": image}, **placed)
+        assert np.array_equal(again.tets, mesh.tets) and np.allclose(again.fields["g"], expected, atol=1e-4)
+    masked = tetwright.values(arrays, {"g": gray}, affine=affine, values_mask=(gray > 100).astype(int))
+    assert masked.fields["g"].min() >= 100.5
+    better = tetwright.improve(mesh, values={"g": tmp_path / "gray.nrrd"})
+    assert better.fields["g"].shape == (len(better.tets),)
+    with pytest.raises(tetwright.InputError, match="no part of the image is in mesh"):
+        tetwright.values(arrays, {"g": gray}, origin=(500, 0, 0))
+    with pytest.raises(tetwright.UsageError, match="give a dict from names of fields to images"):
+        tetwright.values(arrays, gray)
+
+
 def test_bricks_give_the_bytes_of_the_program(tmp_path):
     labels = np.zeros((40, 20, 20), np.uint8)
     labels[3:37, 3:17, 3:17] = 1

@@ -4,7 +4,8 @@
 usage: calculix.py TETWRIGHT [--quick]    (Debian's calculix-ccx and python3-numpy; --quick: the coarser meshes)
 
 A cantilever under its own weight, its first bending mode, and a thick sphere under internal pressure, with linear and
-ten-node tets, on meshes of two sizes; the errors must decrease with the size.
+ten-node tets, on meshes of two sizes; the errors must decrease with the size. A cylinder whose modulus follows from the
+gray values of an image.
 """
 import argparse
 import math
@@ -17,7 +18,7 @@ import tempfile
 
 import numpy as np
 
-from surfaces import beam, spheres
+from surfaces import beam, cylinder, spheres
 
 parser = argparse.ArgumentParser()
 parser.add_argument("tetwright")
@@ -161,7 +162,46 @@ def pressurised_sphere(folder):
         check(f"sphere: order {order} converges at a rate of {least} or more: {rate:.2f}", rate >= least)
 
 
+def gray_cylinder(folder):
+    """A cylinder whose gray values rise along its axis, each slice a spring in series with the others."""
+    radius, length, spacing = 4.0, 24.0, 0.5
+    gray = lambda z: 200 + 50 * z  # along the axis
+    factor, exponent, scale, offset = 6850.0, 1.49, 0.001, 0.05
+    modulus = lambda z: factor * (scale * gray(z) + offset) ** exponent
+    size = [int(2 * (radius + 1) / spacing), int(2 * (radius + 1) / spacing), int((length + 2) / spacing)]
+    origin = np.array([-radius - 1, -radius - 1, -1]) + spacing / 2
+    z, y, x = np.meshgrid(*(origin[a] + spacing * np.arange(size[a]) for a in (2, 1, 0)), indexing="ij")
+    inside = x**2 + y**2 <= radius**2
+    # Air around it, which must not make the skin softer.
+    values = np.where(inside, gray(z), -1000).astype("<f4")
+    for file, data, kind in (("gray", values, "float"), ("mask", inside.astype("u1"), "uint8")):
+        header = f"NRRD0004\ntype: {kind}\ndimension: 3\nsizes: {size[0]} {size[1]} {size[2]}\nencoding: raw\n" \
+                 f"endian: little\nspace dimension: 3\nspace directions: ({spacing},0,0) (0,{spacing},0) (0,0,{spacing})\n" \
+                 f"space origin: ({origin[0]},{origin[1]},{origin[2]})\n\n"
+        (folder / f"{file}.nrrd").write_bytes(header.encode() + data.tobytes())
+    surface = cylinder(folder / "cylinder.obj", radius, length)
+    parts = 64
+    area = parts / 2 * math.sin(2 * math.pi / parts) * radius**2
+    heights = np.linspace(0, length, 100_001)
+    stiffness = area / np.trapezoid(1 / modulus(heights), heights) if hasattr(np, "trapezoid") else \
+        area / np.trapz(1 / modulus(heights), heights)
+    for order in (1, 2):
+        mesh = prepare(folder, surface, f"cylinder_{order}", 6000, order, "--values", "density=gray.nrrd", "--values-mask",
+                       "mask.nrrd", "--bins", "density=24", "--modulus", f"density={factor},{exponent},{scale},{offset}")
+        nodes = nodes_of(mesh)
+        middle = min((n for n in nodes if abs(nodes[n][2]) < 1e-6), key=lambda n: np.linalg.norm(nodes[n][:2]))
+        edge = max((n for n in nodes if abs(nodes[n][2]) < 1e-6), key=lambda n: nodes[n][0])
+        text = solve(folder, "axial", f"*INCLUDE, INPUT={mesh.name}\n*BOUNDARY\nbottom, 3\n{middle}, 1, 2\n{edge}, 2\n"
+                     "top, 3, 3, -0.01\n*STEP\n*STATIC\n*NODE PRINT, NSET=bottom, TOTALS=ONLY\nRF\n*END STEP\n")
+        reached = abs(float(text.split()[-1])) / 0.01
+        print(f"gray cylinder order {order}: axial stiffness {reached:.6g} of {stiffness:.6g} "
+              f"({100 * (reached / stiffness - 1):+.2f} %)")
+        check(f"gray cylinder, order {order}: the stiffness is within 2 % of springs in series",
+              abs(reached / stiffness - 1) < 0.02)
+
+
 with tempfile.TemporaryDirectory(prefix="tetwright-calculix-") as name:
     cantilever(pathlib.Path(name))
     pressurised_sphere(pathlib.Path(name))
+    gray_cylinder(pathlib.Path(name))
 sys.exit(1 if failures else 0)

@@ -16,6 +16,25 @@ def beam(path, length, side):
     return path
 
 
+def cylinder(path, radius, length, parts=64):
+    """Writes a cylinder along z with its ends as groups; its sides are flat between `parts` edges."""
+    lines, faces = [], {"bottom": [], "top": [], "side": []}
+    for z in (0, length):
+        for j in range(parts):
+            phi = 2 * math.pi * j / parts
+            lines.append(f"v {radius * math.cos(phi)!r} {radius * math.sin(phi)!r} {z}")
+    for j in range(parts):
+        after = (j + 1) % parts
+        faces["side"].append((j + 1, after + 1, parts + after + 1, parts + j + 1))
+    faces["bottom"].append(tuple(range(parts, 0, -1)))
+    faces["top"].append(tuple(range(parts + 1, 2 * parts + 1)))
+    for name, all_faces in faces.items():
+        lines.append(f"g {name}")
+        lines += ["f " + " ".join(map(str, face)) for face in all_faces]
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
 def spheres(path, outer, inner=None, parts=120):
     """Writes a ball, or with an inner radius a thick sphere, with its walls as groups, the inner one reversed.
 

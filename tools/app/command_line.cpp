@@ -29,12 +29,13 @@ struct CommandEntry {
   const char* description;
   void (*add_options)(CLI::App& app, CommandLine& c);
 };
-constexpr std::array<CommandEntry, 7> commands{{
+constexpr std::array<CommandEntry, 8> commands{{
     {Command::prepare, "Turns scans or a segmented volume into a simulation mesh, in one go", add_prepare},
     {Command::mesh, "Turns scans or a segmented volume into a dense mesh", add_mesh},
     {Command::simplify, "Reduces the number of tets of a tet mesh", add_simplify},
     {Command::improve, "Improves the shapes of a tet mesh, keeping the number of tets nearly the same",
      add_improve},
+    {Command::values, "Adds the values of images to a tet mesh, which otherwise stays as it is", add_values},
     {Command::check,
      "Reports validity, topology and quality of a tet mesh, and its distance from surfaces; status 1 if it "
      "is not valid (a warning, such as an unused point, leaves it valid)",
@@ -125,7 +126,7 @@ bool parse_arguments(CLI::App& app, int argc, char** argv) {
 
 bool makes_mesh(Command command) {
   return command == Command::prepare || command == Command::mesh || command == Command::simplify ||
-         command == Command::improve;
+         command == Command::improve || command == Command::values;
 }
 
 Task task_of(Command command) {
@@ -133,6 +134,7 @@ Task task_of(Command command) {
   return command == Command::prepare    ? Task::prepare
          : command == Command::mesh     ? Task::mesh
          : command == Command::simplify ? Task::simplify
+         : command == Command::values   ? Task::values
                                         : Task::improve;
 }
 
@@ -146,6 +148,8 @@ const char* name_of(Command command) {
       return "simplify";
     case Command::improve:
       return "improve";
+    case Command::values:
+      return "values";
     case Command::check:
       return "check";
     case Command::batch:

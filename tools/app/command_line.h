@@ -23,7 +23,7 @@ inline constexpr const char* standard_input = "stdin";
 /// How progress is displayed.
 enum class ProgressStyle { automatic, bar, json, none };
 
-enum class Command { prepare, mesh, simplify, improve, check, batch, sample };
+enum class Command { prepare, mesh, simplify, improve, values, check, batch, sample };
 
 /// Files that a command writes. "-": standard output, for formats that can be streamed; empty: not written.
 struct OutputOptions {
@@ -75,6 +75,8 @@ struct CommandLine {
   std::string input_format;           ///< extension for standard input, such as ".ply"; empty: not used
   std::vector<NamedValue> materials;  ///< inputs after the positional ones: name and file
   std::vector<NamedValue> sheets, partitions;  ///< further inputs: name and file
+  std::string modulus_of;                      ///< name of the values of --modulus
+  std::optional<double> min_modulus;           ///< --min-modulus
   PrepareOptions options;  ///< options of commands that make meshes; `check` uses some of them
   OutputOptions outputs;
   ConsoleOptions console;

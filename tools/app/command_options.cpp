@@ -18,6 +18,7 @@
 #include "tools/app/image_options.h"
 #include "tools/app/label_ranges.h"
 #include "tools/app/option_values.h"
+#include "tools/app/value_options.h"
 #include "tools/app/volume_options.h"
 
 namespace tetwright {
@@ -106,7 +107,8 @@ void add_output(CLI::App& app, CommandLine& c, const char* formats) {
 }
 
 /// Adds the options of commands that write a tet mesh.
-void add_mesh_output(CLI::App& app, CommandLine& c) {
+/// \param order true: with --order
+void add_mesh_output(CLI::App& app, CommandLine& c, bool order = true) {
   add_output(app, c, ("The mesh to write: " + known_extensions(FileKind::tet_mesh, FileUse::write)).c_str());
   std::string formats;
   for (const TetFormatInfo& format : written_tet_formats())
@@ -115,9 +117,10 @@ void add_mesh_output(CLI::App& app, CommandLine& c) {
                  "Format of the mesh instead of its extension's default, or of -o -: " + formats +
                      "; of --boundary -: an extension of a surface without its dot")
       ->type_name("NAME");
-  add_whole_number(app, "--order", c.options.order, 1, 2,
-                   "2: ten-node tets, with nodes in the middle of the edges; not in .mesh .meshb .node")
-      ->default_str(std::to_string(c.options.order));
+  if (order)
+    add_whole_number(app, "--order", c.options.order, 1, 2,
+                     "2: ten-node tets, with nodes in the middle of the edges; not in .mesh .meshb .node")
+        ->default_str(std::to_string(c.options.order));
   std::string of_parts;
   for (const TetFormatInfo& format : written_tet_formats())
     if (format.parts && !of_parts.ends_with(format.extension)) of_parts += " " + format.extension;
@@ -333,6 +336,7 @@ void add_prepare(CLI::App& app, CommandLine& c) {
   add_volume_file(app, c.options.volume_file);
   add_labels(app, c);
   add_images(app, c);
+  add_values_options(app, c);
   add_bricks(app, c);
   add_stats(app, c);
   add_common(app, c);
@@ -349,6 +353,7 @@ void add_mesh(CLI::App& app, CommandLine& c) {
   add_volume_file(app, c.options.volume_file);
   add_labels(app, c);
   add_images(app, c);
+  add_values_options(app, c);
   add_stats(app, c);
   add_common(app, c);
   add_time_limit(app, c);
@@ -362,6 +367,7 @@ void add_simplify(CLI::App& app, CommandLine& c) {
   add_simplifying(app, c);
   add_fix_boundary(app, c);
   add_feature_angle(app, c.options.feature_angle);
+  add_values_options(app, c);
   add_strict(app, c);
   add_material_field(app, c);
   add_stats(app, c);
@@ -384,12 +390,33 @@ void add_improve(CLI::App& app, CommandLine& c) {
   add_shaping(app, c, "Max number of rounds, 1 to 10000");
   add_fix_boundary(app, c);
   add_feature_angle(app, c.options.feature_angle);
+  add_values_options(app, c);
   add_strict(app, c);
   add_material_field(app, c);
   add_stats(app, c);
   add_common(app, c);
   add_time_limit(app, c);
   add_seed(app, c);
+}
+
+void add_values(CLI::App& app, CommandLine& c) {
+  app.add_option("MESH", c.inputs, meshes())->required()->expected(1)->allow_extra_args(false);
+  app.add_option_function<std::vector<std::string>>(
+         "IMAGE",
+         [&c](const std::vector<std::string>& all) {
+           for (const std::string& text : all) c.options.values.images.push_back(parse_value_image(text));
+         },
+         "Images, as NAME=FILE or FILE: the mean over each tet becomes the cell field NAME, by default the "
+         "name of the file, and the value at each point the point field NAME")
+      ->required(!c.in_memory)
+      ->expected(-1);
+  add_input_format(app, c);
+  add_mesh_output(app, c, false);
+  add_value_rules(app, c);
+  add_strict(app, c);
+  add_material_field(app, c);
+  add_stats(app, c);
+  add_common(app, c);
 }
 
 void add_check(CLI::App& app, CommandLine& c) {

@@ -13,6 +13,7 @@
 #include "tetwright/io.h"
 #include "tetwright/prepare_steps.h"
 #include "tools/app/commands/output_paths.h"
+#include "tools/app/value_options.h"
 
 namespace tetwright {
 
@@ -34,6 +35,8 @@ void check_no_stream(const CommandLine& out) {
   check("--before", out.check.before);
   for (const std::string& file : out.check.surfaces) check("--surface", file);
   for (const NamedValue& m : out.materials) check("--material", m.value);
+  for (const ValueImage& image : out.options.values.images) check("an image", image.file);
+  check("--values-mask", out.options.values.mask_file);
   for (const NamedValue& s : out.sheets) check("--sheet", s.value);
   for (const NamedValue& p : out.partitions) check("--partition", p.value);
   if (out.command == Command::batch) check("the file of jobs", out.inputs.front());
@@ -125,6 +128,7 @@ void check_holds_second_order(const std::string& output, const std::string& form
 
 void complete_command_line(CommandLine& out) {
   complete_streams(out);
+  complete_value_options(out);
   const bool meshes_scans = out.command == Command::prepare || out.command == Command::mesh;
   if (meshes_scans && out.inputs.empty() && out.materials.empty())
     throw UsageError("there is no input; name a surface or a segmented volume, or give --material NAME=FILE");

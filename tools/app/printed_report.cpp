@@ -165,6 +165,14 @@ void print_parts(const PartitionStatistics& partition) {
   std::printf("\n");
 }
 
+/// Line such as "values 'density': 0.1 to 1.2 in tets, mean 0.6; 16 bins".
+void print_values(const ValueReport& values, const std::optional<BinsReport>& bins) {
+  std::printf("values %s: %.6g to %.6g in tets, mean %.6g", in_quotes(values.name).c_str(), values.smallest,
+              values.largest, values.mean);
+  if (bins && bins->field == values.name) std::printf("; %zu bins", bins->bins.size());
+  std::printf("\n");
+}
+
 /// Line such as "64 bricks of 128 cells (--bricks 128), 12 of them finished before: 4000000 tets coarsened".
 void print_bricks(const BrickReport& bricks) {
   std::printf("%zu bricks of %d cells (--bricks %d)", bricks.bricks, bricks.cells, bricks.cells);
@@ -244,6 +252,7 @@ void print_report(const CommandLine& line, const PrepareReport& run, const Parti
         "second order: of %zu edges on surfaces %zu follow the surface, %zu partly, %zu are straight\n",
         run.second_order->edges, run.second_order->on_surface, run.second_order->part_way,
         run.second_order->straight);
+  for (const ValueReport& values : run.values) print_values(values, run.bins);
   if (parts) print_parts(*parts);
   if (run.bricks) print_bricks(*run.bricks);
   if (run.mesher)

@@ -28,9 +28,10 @@ UNITS = {
     "--only-below": "steradians", "--max-iterations": "iterations", "--beta": "ideal edges", "--gamma": "", "--resolution": "cells",
     "--voxel-size": "input units", "--adaptivity": "finest cells", "--max-refinement": "halvings", "--feature-angle": "degrees",
     "--voxels": "voxels", "--grains": "grains", "--layer": "input units", "--region": "input units", "--cap": "input units", "--contact-tolerance": "input units, or % of the diagonal", "--extend": "input units, or % of the diagonal",
-    "--base": "input units", "--thicken": "input units, or % of the diagonal", "--min-voxels": "voxels", "--spacing": "input units", "--dimensions": "voxels", "--outside-label": "label", "--labels": "labels", "--order": "", "--parts": "parts", "--jobs": "jobs",
+    "--base": "input units", "--thicken": "input units, or % of the diagonal", "--min-voxels": "voxels", "--spacing": "input units", "--dimensions": "voxels", "--outside-label": "label", "--labels": "labels", "--order": "", "--min-modulus": "of the modulus", "--bins": "of the image", "--parts": "parts", "--jobs": "jobs",
 }
-COMMANDS_ORDER = ("prepare", "mesh", "simplify", "improve", "check", "batch", "sample")
+NAMED_TYPES = ("NAME=FILE", "NAME=THICKNESS", "NAME=IMAGE", "NAME=N|A,B,...", "NAME=A,B[,S,T]")
+COMMANDS_ORDER = ("prepare", "mesh", "simplify", "improve", "values", "check", "batch", "sample")
 
 
 class Program:
@@ -79,7 +80,7 @@ def options_of(help_text):
         value = value.removesuffix(" REQUIRED").removesuffix(" ...")
         # NAME=FILE is a type, N=3 a type with a default.
         kind, default = value, ""
-        if "=" in value and value not in ("NAME=FILE", "NAME=THICKNESS"):
+        if "=" in value and value not in NAMED_TYPES:
             kind, default = value.split("=", 1)
         elif bracketed := re.match(r"^(\S+) \[(.*)\]$", value):  # CLI11 2.4
             kind, default = bracketed[1], bracketed[2]
@@ -106,8 +107,8 @@ def options_page(program):
         help_text = program.help(command)
         usage = help_text.splitlines()[0]
         text += f"\n## {command}\n\n{cell(usage)}.\n\n"
-        positional = re.search(r"^Positionals:\n  (\S+)(.*?)\n((?: {10,}.*\n)?)", help_text, re.M)
-        if positional:
+        block = re.search(r"^Positionals:\n((?: {2}.*\n)+)", help_text, re.M)
+        for positional in re.finditer(r"^  (\S+)(.*?)\n((?: {10,}.*\n)?)", block[1] if block else "", re.M):
             described = re.sub(r"^.*?\s{2,}", "", positional[2]) if re.search(r"\s{2,}\S", positional[2]) else positional[3]
             text += f"**{positional[1]}**: {cell(sentence(described.strip()))}\n\n"
         text += "| option | value | unit | default | range | effect |\n| --- | --- | --- | --- | --- | --- |\n"
@@ -119,7 +120,7 @@ def options_page(program):
             if numeric and option not in UNITS:
                 raise SystemExit(f"generate.py: {option} has no unit in UNITS")
             if option not in ranges:
-                ranges[option] = range_of(program, command, option, kind) if kind and kind not in ("FILE", "NAME=FILE") else ""
+                ranges[option] = range_of(program, command, option, kind) if kind and kind not in ("FILE", "NAME=FILE", "NAME=IMAGE") else ""
             text += "| " + " | ".join(cell(c) for c in (
                 ", ".join(f"`{n}`" for n in names), f"`{kind}`" if kind else "flag", UNITS.get(option, ""),
                 "required" if required else f"`{default}`" if default else "", ranges[option],

@@ -12,6 +12,7 @@
 #include "tetwright/prepare_steps.h"
 #include "tetwright/simplify.h"
 #include "tools/prepare/input_changes.h"
+#include "tools/prepare/value_input.h"
 
 namespace tetwright {
 
@@ -39,9 +40,15 @@ void refer_to(const TetMesh& mesh, const char* name, const PrepareRun& run, Prep
   result.reference_name = name;
 }
 
-Prepared mesh_from_scans(std::vector<Input> inputs, PrepareRun& run) {
+ScanInput read_scan_with_images(std::vector<Input> inputs, const ValueInputs& images, PrepareRun& run) {
+  ScanInput scan = read_scan(std::move(inputs), run);
+  check_images_meet(images, box_of_scan(scan), run);
+  return scan;
+}
+
+Prepared mesh_from_scans(std::vector<Input> inputs, const ValueInputs& images, PrepareRun& run) {
   Prepared result;
-  DenseMesh dense = make_dense_mesh(read_scan(std::move(inputs), run), run);
+  DenseMesh dense = make_dense_mesh(read_scan_with_images(std::move(inputs), images, run), run);
   // The result for a segmented volume is compared with its dense mesh.
   if (!dense.surface)
     refer_to(run.original ? run.original->surface : dense.mesh, "the dense mesh", run, result);
@@ -60,9 +67,9 @@ Prepared mesh_from_scans(std::vector<Input> inputs, PrepareRun& run) {
   return result;
 }
 
-Prepared dense_mesh_from_scans(std::vector<Input> inputs, PrepareRun& run) {
+Prepared dense_mesh_from_scans(std::vector<Input> inputs, const ValueInputs& images, PrepareRun& run) {
   Prepared result;
-  DenseMesh dense = make_dense_mesh(read_scan(std::move(inputs), run), run);
+  DenseMesh dense = make_dense_mesh(read_scan_with_images(std::move(inputs), images, run), run);
   if (run.report.tolerance > 0) {
     run.progress.begin_stage("compare");
     run.report.deviation = deviation(dense.mesh, *dense.surface, &run.progress);
@@ -77,9 +84,12 @@ Prepared dense_mesh_from_scans(std::vector<Input> inputs, PrepareRun& run) {
   return result;
 }
 
-Prepared mesh_from_tets(std::vector<Input> inputs, PrepareRun& run) {
+Prepared mesh_from_tets(std::vector<Input> inputs, const ValueInputs& images, PrepareRun& run) {
   Prepared result;
   TetInput input = read_tets(std::move(inputs.front()), run);
+  Box3 box;
+  for (const Vec3& p : input.mesh.points) box.add(p);
+  check_images_meet(images, box, run);
   inputs.clear();
   const std::optional<SurfaceToFollow> surface = followed_interfaces(input.mesh, run);
   refer_to(input.mesh, "the mesh before", run, result);
@@ -112,11 +122,14 @@ Prepared carry_out(std::vector<Input> inputs, PrepareRun& run) {
   run.report.inputs.clear();
   for (const Input& input : inputs) run.report.inputs.push_back(input.name);
   Prepared result;
+  ValueInputs images = read_value_inputs(run);
   const bool of_scans = run.task == Task::prepare || run.task == Task::mesh;
   try {
-    result = run.task == Task::prepare ? mesh_from_scans(std::move(inputs), run)
-             : run.task == Task::mesh  ? dense_mesh_from_scans(std::move(inputs), run)
-                                       : mesh_from_tets(std::move(inputs), run);
+    result = run.task == Task::prepare ? mesh_from_scans(std::move(inputs), images, run)
+             : run.task == Task::mesh  ? dense_mesh_from_scans(std::move(inputs), images, run)
+             : run.task == Task::values
+                 ? Prepared{.mesh = read_tets_unchanged(std::move(inputs.front()), run)}
+                 : mesh_from_tets(std::move(inputs), images, run);
   } catch (const OutOfTime&) {
     throw OutOfTime("out of time: after the " + short_number(run.options.limits.seconds.value_or(0)) +
                     " s of --time-limit there was no mesh yet (in stage '" + run.progress.stage() +
@@ -127,11 +140,12 @@ Prepared carry_out(std::vector<Input> inputs, PrepareRun& run) {
   }
   // Comparing and returning the mesh has no deadline.
   run.progress.set_deadline(Progress::no_deadline);
-  assess(result.mesh, run);
+  if (run.task != Task::values) assess(result.mesh, run);
   // The borders of caps follow faces: they are no curves of the mesh for anything that comes before.
   // A dense mesh is simplified later, and the simplifier would keep them.
   if (run.caps)
     run.report.caps = run.caps->name(result.mesh, run.task == Task::mesh ? CapNaming::sharp : CapNaming::all);
+  take_values(std::move(images), result, run);
   result.midside = std::move(run.midside);
   result.scratch = std::move(run.scratch);
   run.progress.throw_if_stopped();
@@ -156,6 +170,12 @@ Prepared improve_mesh(Input mesh, const PrepareOptions& options, Progress* progr
   std::vector<Input> one;
   one.push_back(std::move(mesh));
   return carry_out_within(Task::improve, std::move(one), options, progress);
+}
+
+Prepared add_values(Input mesh, const PrepareOptions& options, Progress* progress) {
+  std::vector<Input> one;
+  one.push_back(std::move(mesh));
+  return carry_out_within(Task::values, std::move(one), options, progress);
 }
 
 namespace {
@@ -203,6 +223,7 @@ void check_options(Task task, const PrepareOptions& options) {
   }
   if (target.tolerance && options.schedule.kind == Schedule::paper)
     throw UsageError("--schedule paper does not bound distances; leave out --tolerance, or --schedule");
+  check_value_options(task, options.values);
   if (options.bricks.use == BrickOptions::Use::always) check_bricks(task, options);
   if (options.bricks.use == BrickOptions::Use::never && !options.bricks.scratch.empty())
     throw UsageError("--scratch is for bricks; leave it out, or --bricks off");

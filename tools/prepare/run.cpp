@@ -25,6 +25,8 @@ const char* name_of(Task task) {
       return "simplify";
     case Task::improve:
       return "improve";
+    case Task::values:
+      return "values";
   }
   return "";
 }

@@ -16,6 +16,7 @@
 #include "tetwright/mesher_input.h"
 #include "tools/prepare/image_input.h"
 #include "tools/prepare/mask_input.h"
+#include "tools/prepare/value_input.h"
 
 namespace tetwright {
 
@@ -74,6 +75,10 @@ bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
   const LabelOptions& labels = options.labels;
   check_volume_file(inputs, options.volume_file, volume);
   if (!volume) {
+    if (options.values.own_label)
+      throw UsageError(
+          "--values-mask labels is for segmented volumes, and no input is one; give a volume, --values-mask "
+          "FILE");
     if (!labels.meshed.empty() || !labels.names_file.empty() || labels.outside || labels.min_voxels)
       throw UsageError(
           "--labels, --label-names, --outside-label and --min-voxels are for segmented volumes, and no "
@@ -152,6 +157,7 @@ LabelInput read_labels(std::optional<LabelVolume> in_memory, std::vector<Input>&
                                                   : take_label_source(inputs.front(), run.seconds_waited);
   if (!masks && run.options.labels.names_file.empty()) take_names(source->grid(), choice);
   run.report.material_colours = source->grid().colours;
+  if (run.options.values.own_label) run.value_labels = copy_labels(*source);
   LabelInput labels = make_label_input(std::move(source), run.report.inputs.front(), choice, &run.progress);
   run.report.diagnostics.insert(run.report.diagnostics.end(), labels.findings.begin(), labels.findings.end());
   run.report.volume.emplace(labels);

@@ -6,6 +6,7 @@
 #include "tetwright/error.h"
 #include "tetwright/io.h"
 #include "tetwright/mesh_quality.h"
+#include "tetwright/sheets.h"
 #include "tools/prepare/edge_sizes_input.h"
 
 namespace tetwright {
@@ -49,6 +50,24 @@ void repair(TetMesh& mesh, const std::string& file, PrepareReport& report) {
 }
 
 }  // namespace
+
+TetMesh read_tets_unchanged(Input from, PrepareRun& run) {
+  const Stopwatch watch;
+  run.progress.begin_stage("read");
+  check_input_kind(from, run.task);
+  ReadTetMesh read = take_tet_mesh(from, {run.options.material_field}, run.seconds_waited);
+  run.report.material_field = read.material_field;
+  run.report.input_points = read.mesh.points.size();
+  report_dropped(read.dropped, from.name, run.report);
+  run.progress.throw_if_stopped();
+  read.mesh.interfaces = interfaces_with_sheets(read.mesh);
+  run.report.patches = patches_of_input(read.mesh);
+  run.report.material_names = read.mesh.material_names;
+  run.report.result = mesh_statistics(read.mesh, run.options.shapes.bound());
+  run.report.seconds_read = watch.seconds();
+  run.report.loops_read = watch.loops();
+  return std::move(read.mesh);
+}
 
 TetInput read_tets(Input from, PrepareRun& run) {
   const Stopwatch watch;

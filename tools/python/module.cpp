@@ -163,6 +163,7 @@ std::shared_ptr<Mesh> run(std::vector<std::string> arguments, NamedInputs& input
           made->shortfall = shortfalls_of(run.report);
           made->mesh = std::move(result.mesh);
           made->midside = std::move(result.midside);
+          made->bins = std::move(result.bins);
         });
       },
       progress, callback);
@@ -307,6 +308,16 @@ PYBIND11_MODULE(_core, module) {
               const std::array<double, 3>& origin, const std::array<std::array<double, 3>, 3>& directions) {
              to.values[name] = to_image(name, values, origin, directions);
            });
+  .def("add_mask",
+       [](NamedInputs& to, const std::string& name, const Labels& labels, const std::array<double, 3>& origin,
+          const std::array<std::array<double, 3>, 3>& directions) {
+         to.masks[name] = std::make_shared<const LabelVolume>(to_volume(name, labels, origin, directions));
+       })
+      .def("add_values_image", [](NamedInputs& to, const std::string& name, const Pixels& values,
+                                  const std::array<double, 3>& origin,
+                                  const std::array<std::array<double, 3>, 3>& directions) {
+        to.images[name] = std::make_shared<const ImageVolume>(to_image(name, values, origin, directions));
+      });
 
   bind_mesh(module);
 

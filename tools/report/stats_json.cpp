@@ -12,6 +12,7 @@
 #include "tools/report/diagnostics_json.h"
 #include "tools/report/features_json.h"
 #include "tools/report/stage_times_json.h"
+#include "tools/report/values_json.h"
 
 namespace tetwright {
 
@@ -451,6 +452,8 @@ std::string stats_json(const CommandRun& ended) {
                          {"on_surface", run.second_order->on_surface},
                          {"part_way", run.second_order->part_way},
                          {"straight", run.second_order->straight}};
+  if (!run.values.empty()) j["values"] = values_json(run.values);
+  if (run.bins) j["bins"] = bins_json(*run.bins);
   if (ended.parts) j["parts"] = partition_json(*ended.parts);
   if (run.edge_lengths) j["edge_lengths"] = edge_lengths_json(*run.edge_lengths, run.sizes);
   if (run.crease_comparison) j["creases"] = creases_json(*run.crease_comparison);

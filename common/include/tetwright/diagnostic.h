@@ -54,6 +54,9 @@ enum class DiagnosticCode : std::uint8_t {
   solid_uncertain,
   thin_parts,
   thin_parts_uncertain,
+  values_outside,
+  values_nearest,
+  values_not_finite,
   not_written,
   names_changed,
   // Surfaces.

@@ -2,12 +2,15 @@
 #include "common/io/names/mesh_parts.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "common/mesh/boundary_groups.h"
 #include "common/mesh/face_buckets.h"
+#include "common/number_text.h"
 #include "common/unique_names.h"
 #include "tetwright/error.h"
 #include "tetwright/mesh_quality.h"
@@ -82,6 +85,48 @@ MeshParts mesh_parts(const TetMesh& mesh, const NameRules& rules) {
   for (std::size_t i = 0; i < mesh.interfaces.size(); ++i)
     parts.surfaces[surface_of.at(groups.number_of(mesh.interfaces[i]))].faces.push_back(i);
   return parts;
+}
+
+std::vector<BinPart> parts_of_bins(const TetBins& bins, const std::vector<MeshParts::Material>& materials,
+                                   const NameRules& rules) {
+  UniqueNames names(rules.form, rules.ignore_case);
+  std::int64_t last = 0;
+  for (const MeshParts::Material& m : materials) {
+    (void)names.add(m.name);
+    last = std::max(last, m.number);
+  }
+  std::set<std::int64_t> numbers;
+  for (const MeshParts::Material& m : materials) numbers.insert(m.number);
+  // After those of the materials, if there is room.
+  const std::int64_t most = rules.max_number > 0 ? rules.max_number : std::numeric_limits<MaterialTag>::max();
+  std::int64_t number = last <= most - static_cast<std::int64_t>(bins.bins.size()) ? last : 0;
+  std::vector<BinPart> parts;
+  for (const ValueBin& bin : bins.bins) {
+    do ++number;
+    while (numbers.contains(number));
+    parts.push_back({&bin, number, names.add(bin.name), {}});
+  }
+  for (std::size_t t = 0; t < bins.of_tets.size(); ++t)
+    parts[bins.of_tets[t]].tets.push_back(static_cast<Index>(t));
+  return parts;
+}
+
+std::string comment_on_bin(const ValueBin& bin, const std::string& field) {
+  std::string text = "mean ";
+  append_number(text, bin.mean);
+  text += " of " + printable_name(field) + ", ";
+  if (std::isfinite(bin.low)) {
+    text += "from ";
+    append_number(text, bin.low);
+    text += ' ';
+  }
+  if (std::isfinite(bin.high)) {
+    text += "to ";
+    append_number(text, bin.high);
+    text += ", ";
+  }
+  append_number(text, bin.tets);
+  return text + (bin.tets == 1 ? " tet" : " tets");
 }
 
 std::string plain_name(const std::string& name, std::size_t longest) {

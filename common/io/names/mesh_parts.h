@@ -12,6 +12,7 @@
 #include "common/utf8.h"
 #include "tetwright/surface_mesh.h"
 #include "tetwright/tet_mesh.h"
+#include "tetwright/value_bins.h"
 
 namespace tetwright {
 
@@ -57,6 +58,23 @@ NameRules printable_names();
 /// "material_TAG"; for a group "surface_NUMBER" if it is a region of the input, otherwise the names of the
 /// two materials, "bone|skin" or "bone|outside".
 MeshParts mesh_parts(const TetMesh& mesh, const NameRules& rules);
+
+/// A bin of tets in the formats of solvers.
+struct BinPart {
+  const ValueBin* bin;
+  std::int64_t number;      ///< of the bin in the format, none of a material
+  std::string name;         ///< unique, also among the materials
+  std::vector<Index> tets;  ///< ascending
+};
+
+/// Bins with names and numbers that the format can hold.
+///
+/// \param materials of the same mesh in the same format
+std::vector<BinPart> parts_of_bins(const TetBins& bins, const std::vector<MeshParts::Material>& materials,
+                                   const NameRules& rules);
+
+/// Mean, bounds and number of tets of a bin, for a comment.
+std::string comment_on_bin(const ValueBin& bin, const std::string& field);
 
 /// mesh_parts() without tets and faces; takes one pass over them.
 MeshParts names_of_parts(const TetMesh& mesh, const NameRules& rules);

@@ -38,6 +38,22 @@ void write_elements(TextWriter& out, const MeshToWrite& written, const MeshParts
   }
 }
 
+/// Writes the bins as element sets, and their moduli as sections.
+void write_bins(TextWriter& out, const TetBins& bins, const std::vector<MeshParts::Material>& materials) {
+  const std::vector<BinPart> parts = parts_of_bins(bins, materials, abaqus_names());
+  for (const BinPart& part : parts) {
+    out << "** " << part.name << ": " << comment_on_bin(*part.bin, bins.field) << '\n';
+    out << "*ELSET, ELSET=" << part.name << '\n';
+    write_numbers(out, part.tets);
+  }
+  if (!bins.poisson) return;
+  for (const BinPart& part : parts)
+    out << "*MATERIAL, NAME=" << part.name << "\n*ELASTIC\n"
+        << fixed_width_number(part.bin->modulus.value_or(0), number_width) << ", "
+        << fixed_width_number(*bins.poisson, number_width) << "\n*SOLID SECTION, ELSET=" << part.name
+        << ", MATERIAL=" << part.name << '\n';
+}
+
 }  // namespace
 
 NameRules abaqus_names() {
@@ -60,6 +76,7 @@ void write_abaqus(const MeshToWrite& written, const ByteSink& sink) {
     out << '\n';
   }
   for (const MeshParts::Material& m : parts.materials) write_elements(out, written, m);
+  if (written.bins) write_bins(out, *written.bins, parts.materials);
   const std::vector<TetFace> faces = faces_of_tets(mesh);
   for (const MeshParts::Surface& s : parts.surfaces) {
     out << "*SURFACE, NAME=" << s.name << ", TYPE=ELEMENT\n";

@@ -2,6 +2,10 @@
 #include "common/io/tets/febio.h"
 
 #include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "common/io/names/mesh_parts.h"
 #include "common/io/text/text_writer.h"
@@ -34,8 +38,44 @@ class NodeList {
   bool first_ = true;
 };
 
-void write_elements_of(TextWriter& out, const MeshToWrite& written, const MeshParts::Material& material) {
+/// Tets of a material or of a bin.
+struct FebioDomain {
+  std::string name;
+  std::vector<Index> tets;
+  std::string comment;            ///< empty: none
+  std::optional<double> modulus;  ///< std::nullopt: the material is not written
+};
+
+std::vector<FebioDomain> domains_of(const MeshToWrite& written, MeshParts& parts) {
+  std::vector<FebioDomain> domains;
+  if (written.bins)
+    for (BinPart& part : parts_of_bins(*written.bins, parts.materials, febio_names()))
+      domains.push_back({std::move(part.name), std::move(part.tets),
+                         comment_on_bin(*part.bin, written.bins->field), part.bin->modulus});
+  else
+    for (MeshParts::Material& m : parts.materials)
+      domains.push_back({std::move(m.name), std::move(m.tets), {}, {}});
+  return domains;
+}
+
+void write_materials(TextWriter& out, const std::vector<FebioDomain>& domains, double poisson) {
+  out << "<Material>\n";
+  for (std::size_t i = 0; i < domains.size(); ++i)
+    out << "<material id=\"" << i + 1 << "\" name=\"" << xml_text(domains[i].name)
+        << "\" type=\"isotropic elastic\"><E>" << domains[i].modulus.value_or(0) << "</E><v>" << poisson
+        << "</v></material>\n";
+  out << "</Material>\n";
+}
+
+/// Text of a comment, which may not contain two hyphens in succession.
+std::string comment_text(std::string text) {
+  for (std::size_t at = 0; (at = text.find("--", at)) != std::string::npos;) text.replace(at, 2, "- -");
+  return text;
+}
+
+void write_elements_of(TextWriter& out, const MeshToWrite& written, const FebioDomain& material) {
   const TetMesh& mesh = written.mesh;
+  if (!material.comment.empty()) out << "<!-- " << comment_text(material.comment) << " -->\n";
   out << "<Elements type=\"" << (written.midside ? "tet10" : "tet4") << "\" name=\""
       << xml_text(material.name) << "\">\n";
   for (const Index t : material.tets) {
@@ -75,21 +115,26 @@ void write_surface(TextWriter& out, const MeshToWrite& written, const MeshParts:
 NameRules febio_names() { return {.form = name_for_febio, .surface_numbers = false}; }
 
 void write_febio(const MeshToWrite& written, const ByteSink& sink) {
-  const MeshParts parts = mesh_parts(written.mesh, febio_names());
+  MeshParts parts = mesh_parts(written.mesh, febio_names());
+  const std::vector<FebioDomain> domains = domains_of(written, parts);
+  const bool moduli = written.bins && written.bins->poisson;
   TextWriter out(sink);
   out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<febio_spec version=\"4.0\">\n"
-         "<!-- Written by tetwright: materials of the names of the domains are to be added -->\n<Mesh>\n"
-         "<Nodes>\n";  // no name: it would define a node set, whose name might be taken
+      << (moduli ? "<!-- Written by tetwright -->\n"
+                 : "<!-- Written by tetwright: materials of the names of the domains are to be added -->\n");
+  if (moduli) write_materials(out, domains, *written.bins->poisson);
+  out << "<Mesh>\n<Nodes>\n";  // no name: it would define a node set, whose name might be taken
   for (std::size_t i = 0; i < written.nodes(); ++i) {
     const Vec3& p = written.node(i);
     out << "<node id=\"" << i + 1 << "\">" << p.x() << ',' << p.y() << ',' << p.z() << "</node>\n";
   }
   out << "</Nodes>\n";
-  for (const MeshParts::Material& m : parts.materials) write_elements_of(out, written, m);
+  for (const FebioDomain& domain : domains) write_elements_of(out, written, domain);
   for (const MeshParts::Surface& s : parts.surfaces) write_surface(out, written, s);
   out << "</Mesh>\n<MeshDomains>\n";
-  for (const MeshParts::Material& m : parts.materials)
-    out << "<SolidDomain name=\"" << xml_text(m.name) << "\" mat=\"" << xml_text(m.name) << "\"/>\n";
+  for (const FebioDomain& domain : domains)
+    out << "<SolidDomain name=\"" << xml_text(domain.name) << "\" mat=\"" << xml_text(domain.name)
+        << "\"/>\n";
   out << "</MeshDomains>\n</febio_spec>\n";
   out.flush();
 }

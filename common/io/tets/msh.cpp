@@ -2,6 +2,7 @@
 #include "common/io/tets/msh.h"
 
 #include <algorithm>
+#include <map>
 #include <span>
 #include <string>
 #include <vector>
@@ -47,12 +48,24 @@ std::string write_msh(const MeshToWrite& written) {
   const MidsideNodes* midside = written.midside;
   std::string out = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
   const MshGroups groups(mesh);
-  if (!groups.material_names.empty() || !groups.face_names.empty()) {
+  // Each tet has one physical group: its bin, if there are bins, else its material.
+  std::map<MaterialTag, std::string> names = groups.material_names;
+  std::vector<MaterialTag> of_tets;
+  if (written.bins) {
+    names.clear();
+    of_tets.resize(mesh.tets.size());
+    for (const BinPart& part : msh_bins(mesh, *written.bins)) {
+      names[static_cast<MaterialTag>(part.number)] = part.name;
+      for (const Index t : part.tets) of_tets[t] = static_cast<MaterialTag>(part.number);
+    }
+  }
+  const std::vector<MaterialTag>& physical = written.bins ? of_tets : mesh.materials;
+  if (!names.empty() || !groups.face_names.empty()) {
     out += "$PhysicalNames\n";
-    append_number(out, groups.face_names.size() + groups.material_names.size());
+    append_number(out, groups.face_names.size() + names.size());
     out += '\n';
     for (const auto& [number, name] : groups.face_names) append_name(out, 2, number, name);
-    for (const auto& [tag, name] : groups.material_names) append_name(out, 3, tag, name);
+    for (const auto& [tag, name] : names) append_name(out, 3, tag, name);
     out += "$EndPhysicalNames\n";
   }
   out += "$Nodes\n";
@@ -69,13 +82,13 @@ std::string write_msh(const MeshToWrite& written) {
   out += "$EndNodes\n$Elements\n";
   append_number(out, mesh.tets.size() + mesh.interfaces.size());
   out += '\n';
-  // The second tag is the number of the geometrical entity and must be positive: one for each material.
-  std::vector<MaterialTag> tags = mesh.materials;
+  // The second tag is the number of the geometrical entity and must be positive: one for each group.
+  std::vector<MaterialTag> tags = physical;
   std::sort(tags.begin(), tags.end());
   tags.erase(std::unique(tags.begin(), tags.end()), tags.end());
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    begin_element(out, t + 1, midside ? element::quadratic_tet.msh : element::tet.msh, mesh.materials[t],
-                  std::lower_bound(tags.begin(), tags.end(), mesh.materials[t]) - tags.begin() + 1);
+    begin_element(out, t + 1, midside ? element::quadratic_tet.msh : element::tet.msh, physical[t],
+                  std::lower_bound(tags.begin(), tags.end(), physical[t]) - tags.begin() + 1);
     append_nodes(out, mesh.tets[t]);
     if (midside)
       for (const std::size_t m : msh_midside_order)

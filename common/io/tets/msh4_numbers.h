@@ -68,8 +68,10 @@ inline std::map<std::int64_t, std::int64_t> msh4_volumes(const TetMesh& mesh) {
 }
 
 /// Writes the names of physical groups, and comments with those tags that cannot be their numbers.
+/// \param further names of further groups of volumes, by number
 inline void write_msh4_groups(TextWriter& out, const MshGroups& groups,
-                              const std::map<std::int64_t, std::int64_t>& physical) {
+                              const std::map<std::int64_t, std::int64_t>& physical,
+                              const std::map<std::int64_t, std::string>& further = {}) {
   bool any = false;
   for (const auto& [tag, number] : physical) {
     if (tag == number) continue;
@@ -78,7 +80,7 @@ inline void write_msh4_groups(TextWriter& out, const MshGroups& groups,
     out << msh_material_comment << number << ' ' << tag << '\n';
   }
   if (any) out << "$EndComments\n";
-  std::map<std::int64_t, std::string> volumes;
+  std::map<std::int64_t, std::string> volumes = further;
   for (const auto& [tag, name] : groups.material_names)
     if (const auto number = physical.find(tag); number != physical.end()) volumes[number->second] = name;
   if (volumes.empty() && groups.face_names.empty()) return;

@@ -18,13 +18,14 @@ namespace tetwright {
 
 namespace {
 
-/// A volume or surface of Gmsh's model, with a physical group of the same number.
+/// A volume or surface of Gmsh's model.
 struct Entity {
   int dimension;
   std::int64_t number;
-  std::vector<std::size_t> elements;  ///< tets or interface triangles
-  std::set<std::int64_t> bounds;      ///< surfaces of a volume, negative if their normals point into it
-  std::vector<Index> nodes;           ///< nodes classified on the entity, ascending
+  std::vector<std::int64_t> physical;  ///< groups
+  std::vector<std::size_t> elements;   ///< tets or interface triangles
+  std::set<std::int64_t> bounds;       ///< surfaces of a volume, negative if their normals point into it
+  std::vector<Index> nodes;            ///< nodes classified on the entity, ascending
   Vec3 min = Vec3::Constant(std::numeric_limits<double>::infinity());
   Vec3 max = -min;
 };
@@ -39,13 +40,16 @@ class Msh4Writer {
         numbers_(out_, binary),
         binary_(binary),
         physical_(msh4_volumes(mesh_)) {
+    if (written.bins) bins_ = msh_bins(mesh_, *written.bins);
     collect_entities();
     classify_nodes();
   }
 
   void write() {
     numbers_.begin_file();
-    write_msh4_groups(out_, groups_, physical_);
+    std::map<std::int64_t, std::string> names_of_bins;
+    for (const BinPart& bin : bins_) names_of_bins[bin.number] = bin.name;
+    write_msh4_groups(out_, groups_, physical_, names_of_bins);
     write_entities();
     write_nodes();
     write_elements();
@@ -64,14 +68,23 @@ class Msh4Writer {
       const InterfaceTriangle& t = mesh_.interfaces[i];
       const std::int64_t number = groups_.faces.number_of(t);
       Entity& surface =
-          surfaces.try_emplace(number, Entity{surface_dimension, number, {}, {}, {}}).first->second;
+          surfaces.try_emplace(number, Entity{surface_dimension, number, {number}, {}, {}, {}}).first->second;
       surface.elements.push_back(i);
-      if (t.is_sheet()) continue;  // it bounds no volume
+      // A sheet bounds no volume, and faces between bins, which bound theirs, are not in the file.
+      if (t.is_sheet() || written_.bins) continue;
       volume(volumes, t.material).bounds.insert(number);
       if (t.other) volume(volumes, *t.other).bounds.insert(-number);
     }
-    for (std::size_t t = 0; t < mesh_.tets.size(); ++t)
-      volume(volumes, mesh_.materials[t]).elements.push_back(t);
+    if (!written_.bins)
+      for (std::size_t t = 0; t < mesh_.tets.size(); ++t)
+        volume(volumes, mesh_.materials[t]).elements.push_back(t);
+    for (BinPart& bin : bins_)
+      volumes[bin.number] = {volume_dimension,
+                             bin.number,
+                             {physical_.at(bin.bin->material), bin.number},
+                             {bin.tets.begin(), bin.tets.end()},
+                             {},
+                             {}};
     for (auto* entities : {&surfaces, &volumes})
       for (auto& [number, entity] : *entities) entities_.push_back(std::move(entity));
     surfaces_ = surfaces.size();
@@ -79,7 +92,7 @@ class Msh4Writer {
 
   Entity& volume(std::map<std::int64_t, Entity>& volumes, MaterialTag tag) const {
     const std::int64_t number = physical_.at(tag);
-    return volumes.try_emplace(number, Entity{volume_dimension, number, {}, {}, {}}).first->second;
+    return volumes.try_emplace(number, Entity{volume_dimension, number, {number}, {}, {}, {}}).first->second;
   }
 
   /// Classifies each node on the first entity that has an element at it, surfaces before volumes.
@@ -126,7 +139,9 @@ class Msh4Writer {
       numbers_.integer(entity.number);
       for (const Vec3& corner : {entity.min, entity.max})
         for (const double x : corner) numbers_.real(x);
-      numbers_.size(1).integer(entity.number).size(entity.bounds.size());
+      numbers_.size(entity.physical.size());
+      for (const std::int64_t group : entity.physical) numbers_.integer(group);
+      numbers_.size(entity.bounds.size());
       for (const std::int64_t bound : entity.bounds) numbers_.integer(bound);
       numbers_.end_line();
     }
@@ -198,6 +213,7 @@ class Msh4Writer {
   Msh4Numbers numbers_;
   bool binary_;
   std::map<std::int64_t, std::int64_t> physical_;  ///< physical groups by material
+  std::vector<BinPart> bins_;                      ///< each is a volume
   std::vector<Entity> entities_;                   ///< surfaces, then volumes
   std::size_t surfaces_ = 0;
 };

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/tets/msh_groups.h"
 
+#include <limits>
+
 #include "common/io/tets/msh_data.h"
 #include "common/unique_names.h"
 #include "tetwright/mesh_quality.h"
@@ -50,6 +52,14 @@ MshGroups::MshGroups(const TetMesh& mesh)
     : faces(mesh),
       material_names(material_names_to_write(mesh.material_names)),
       face_names(group_names_to_write(faces, material_names)) {}
+
+std::vector<BinPart> msh_bins(const TetMesh& mesh, const TetBins& bins) {
+  return parts_of_bins(
+      bins,
+      names_of_parts(mesh, {.form = msh_name, .max_number = std::numeric_limits<MaterialTag>::max()})
+          .materials,
+      {.form = msh_name, .max_number = std::numeric_limits<MaterialTag>::max()});
+}
 
 MeshParts msh_parts(const TetMesh& mesh) {
   const MshGroups groups(mesh);

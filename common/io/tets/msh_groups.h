@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "common/io/names/mesh_parts.h"
 #include "common/mesh/boundary_groups.h"
@@ -21,6 +22,9 @@ struct MshGroups {
   /// Unique names by group number, for groups that have one.
   std::map<std::int64_t, std::string> face_names;
 };
+
+/// Bins as physical groups, with numbers that no material has.
+std::vector<BinPart> msh_bins(const TetMesh& mesh, const TetBins& bins);
 
 /// Groups for name_changes(): tags of materials are kept; comments give those that the format cannot hold.
 MeshParts msh_parts(const TetMesh& mesh);

@@ -49,19 +49,39 @@ void write_points(TextWriter& out, const MeshToWrite& written) {
   }
 }
 
-void write_tets(TextWriter& out, const MeshToWrite& written, const MeshParts& parts) {
+void write_tets_of(TextWriter& out, const MeshToWrite& written, std::int64_t number, const std::string& name,
+                   const std::vector<Index>& tets) {
   const TetMesh& mesh = written.mesh;
-  for (const MeshParts::Material& m : parts.materials) {
-    const auto property = static_cast<std::size_t>(m.number);
-    out << nastran_material_comment << property << ": " << m.name << '\n';
-    write_entry(out, "PSOLID", {property, property});
-    for (const Index t : m.tets) {
-      std::vector<std::size_t> fields = {std::size_t{t} + 1, property};
-      for (const Index v : mesh.tets[t]) fields.push_back(std::size_t{v} + 1);
-      if (written.midside)
-        for (const Index node : written.midside->of_tets[t]) fields.push_back(mesh.points.size() + node + 1);
-      write_entry(out, "CTETRA", fields);
-    }
+  const auto property = static_cast<std::size_t>(number);
+  out << nastran_material_comment << property << ": " << name << '\n';
+  write_entry(out, "PSOLID", {property, property});
+  for (const Index t : tets) {
+    std::vector<std::size_t> fields = {std::size_t{t} + 1, property};
+    for (const Index v : mesh.tets[t]) fields.push_back(std::size_t{v} + 1);
+    if (written.midside)
+      for (const Index node : written.midside->of_tets[t]) fields.push_back(mesh.points.size() + node + 1);
+    write_entry(out, "CTETRA", fields);
+  }
+}
+
+void write_tets(TextWriter& out, const MeshToWrite& written, const MeshParts& parts) {
+  if (!written.bins) {
+    for (const MeshParts::Material& m : parts.materials)
+      write_tets_of(out, written, m.number, m.name, m.tets);
+    return;
+  }
+  const TetBins& bins = *written.bins;
+  for (const BinPart& part : parts_of_bins(bins, parts.materials, nastran_names())) {
+    out << "$ " << part.name << ": " << comment_on_bin(*part.bin, bins.field) << '\n';
+    write_tets_of(out, written, part.number, part.name, part.tets);
+    if (!bins.poisson) continue;
+    const auto field = [&](double x) {
+      return padded(fixed_width_number(x, large_field, true), large_field);
+    };
+    // The shear modulus, which is left blank, follows from the other two.
+    out << padded("MAT1*", small_field) << padded(std::to_string(part.number), large_field)
+        << field(part.bin->modulus.value_or(0)) << padded("", large_field) << field(*bins.poisson)
+        << "*\n*\n";
   }
 }
 
@@ -99,7 +119,10 @@ void write_nastran(const MeshToWrite& written, const ByteSink& sink) {
                       " nodes or tets; write another format");
   const MeshParts parts = mesh_parts(written.mesh, nastran_names());
   TextWriter out(sink);
-  out << "$ Written by tetwright: a MAT1 with the number of each PSOLID is to be added\nBEGIN BULK\n";
+  out << (written.bins && written.bins->poisson
+              ? "$ Written by tetwright\n"
+              : "$ Written by tetwright: a MAT1 with the number of each PSOLID is to be added\n")
+      << "BEGIN BULK\n";
   write_points(out, written);
   write_tets(out, written, parts);
   write_surfaces(out, written, parts);

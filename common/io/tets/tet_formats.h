@@ -51,6 +51,8 @@ struct TetFormat {
   bool point_fields = true;  ///< may have point fields when it is read
   // Meaning as in TetFormatInfo.
   bool names = true, surfaces = true, patch_names = true, fields = true, second_order = false;
+  BinsAs bins = BinsAs::none;
+  bool moduli = false;
 };
 
 /// All formats in the order in which they are listed. The first one with an extension is its default.

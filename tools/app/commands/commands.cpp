@@ -49,7 +49,10 @@ void limit_process_memory(const CommandLine& line) {
 Prepared make_result(CommandRun& run) {
   const CommandLine& line = run.line;
   PrepareOptions options = line.options;
-  if (run.in_memory) take_sizes(*run.in_memory, options.sizes);
+  if (run.in_memory) {
+    take_sizes(*run.in_memory, options.sizes);
+    take_images(*run.in_memory, options.values);
+  }
   options.keep.reference = !line.outputs.report.empty();
   options.keep.field = !line.outputs.distances.empty();
   // Measured: the text of the file is in memory in addition to the mesh.

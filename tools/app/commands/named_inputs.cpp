@@ -46,4 +46,12 @@ void take_sizes(NamedInputs& in_memory, SizeOptions& options) {
     options.field->source = source_of(std::move(sizes->second));
 }
 
+void take_images(const NamedInputs& in_memory, ValueOptions& options) {
+  for (ValueImage& image : options.images)
+    if (const auto value = in_memory.images.find(image.file); value != in_memory.images.end())
+      image.image = value->second;
+  if (const auto mask = in_memory.masks.find(options.mask_file); mask != in_memory.masks.end())
+    options.mask = mask->second;
+}
+
 }  // namespace tetwright

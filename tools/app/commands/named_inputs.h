@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
@@ -23,7 +24,9 @@ struct SizesObject {
 /// name in full, and it may become a material's name. A name that is not listed is a file.
 struct NamedInputs {
   std::map<std::string, Input::Value> values;
-  std::map<std::string, SizesObject> sizes;  ///< sources for --size-field
+  std::map<std::string, SizesObject> sizes;                          ///< sources for --size-field
+  std::map<std::string, std::shared_ptr<const ImageVolume>> images;  ///< for --values
+  std::map<std::string, std::shared_ptr<const LabelVolume>> masks;   ///< for --values-mask
 };
 
 /// Input for a name on the command line: standard input, a file, or a value moved out of `in_memory`.
@@ -36,5 +39,8 @@ std::vector<Input> inputs_of(const CommandLine& line, NamedInputs* in_memory);
 
 /// Makes a size field in memory the source of sizes in `options`.
 void take_sizes(NamedInputs& in_memory, SizeOptions& options);
+
+/// Makes images and a mask in memory those of `options`.
+void take_images(const NamedInputs& in_memory, ValueOptions& options);
 
 }  // namespace tetwright

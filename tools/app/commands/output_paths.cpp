@@ -50,7 +50,9 @@ class KnownFiles {
 /// All files that the call reads.
 std::vector<std::string> files_read(const CommandLine& line) {
   std::vector<std::string> files = input_files(line);
-  files.insert(files.end(), {line.options.labels.names_file, line.check.before});
+  files.insert(files.end(),
+               {line.options.labels.names_file, line.check.before, line.options.values.mask_file});
+  for (const ValueImage& image : line.options.values.images) files.push_back(image.file);
   if (line.options.sizes.field) files.push_back(line.options.sizes.field->name);
   files.insert(files.end(), line.check.surfaces.begin(), line.check.surfaces.end());
   return files;
@@ -73,6 +75,7 @@ std::vector<Written> files_written(const CommandLine& line) {
       files.push_back({"-o", file});
   for (const Written& more : {Written{"--boundary", line.outputs.boundary},
                               {"--write-sdf", line.outputs.distances},
+                              {"--bins", bins_table_of(line)},
                               {"--report", line.outputs.report},
                               {"--stats", line.outputs.stats},
                               {"--log-file", line.console.log_file}})
@@ -91,7 +94,8 @@ enum class Which { reports, all };
 
 void check_files_are_different(const CommandLine& line, Which which) {
   // These commands may overwrite their input.
-  const bool in_place = line.command == Command::simplify || line.command == Command::improve;
+  const bool in_place = line.command == Command::simplify || line.command == Command::improve ||
+                        line.command == Command::values;
   const std::vector<Written> written = files_written(line);
   // Reports of the run are last, so that each is compared with all other files.
   const std::size_t first =
@@ -146,6 +150,12 @@ std::vector<std::string> read_files(const CommandLine& line) {
   return names;
 }
 
+std::string bins_table_of(const CommandLine& line) {
+  const std::string& mesh = line.outputs.mesh;
+  if (line.options.values.bins_of.empty() || mesh.empty() || mesh == "-") return {};
+  return (std::filesystem::path(mesh).parent_path() / (file_stem(mesh) + "_bins.csv")).string();
+}
+
 std::string results_file_of(const CommandLine& line) {
   return line.batch.results.empty()
              ? std::filesystem::path(line.inputs.front()).replace_extension(".results.jsonl").string()
@@ -181,6 +191,7 @@ void check_output_paths(const CommandLine& line) {
   if (!line.outputs.boundary.empty())
     check_output_path(line.outputs.boundary, FileKind::surface, line.outputs.boundary_format);
   check_sdf_path(line);
+  if (const std::string table = bins_table_of(line); !table.empty()) check_output_file(table);
   check_report_path(line);
   check_files_are_different(line, Which::all);
 }

@@ -10,7 +10,8 @@ namespace tetwright {
 
 /// Checks the output files of a command before any work. The files of -o, --boundary, --write-sdf and
 /// --report must have a known extension and be writable, and must not replace an input or each other, not
-/// even through a link. Only `simplify` and `improve` may replace their input, by -o. `check` writes no mesh.
+/// even through a link. Only `simplify`, `improve` and `values` may replace
+/// their input, by -o. `check` writes no mesh.
 ///
 /// \throws UsageError for an invalid name
 /// \throws OutputError if a file cannot be written
@@ -24,6 +25,9 @@ void check_tet_stream(const CommandLine& line);
 /// All files that the call writes or reads. The files read include those to which a named file refers.
 std::vector<std::string> written_files(const CommandLine& line);
 std::vector<std::string> read_files(const CommandLine& line);
+
+/// File with the table of bins, beside the mesh; empty: none is written.
+std::string bins_table_of(const CommandLine& line);
 
 /// Path of the file with the results of a batch.
 std::string results_file_of(const CommandLine& line);

@@ -9,6 +9,7 @@
 #include "tetwright/partition.h"
 #include "tetwright/prepare_steps.h"
 #include "tetwright/tet_parts.h"
+#include "tools/app/commands/output_paths.h"
 #include "tools/app/commands/report_file.h"
 #include "tools/app/printed_report.h"
 #include "tools/report/stats_json.h"
@@ -26,7 +27,8 @@ TetMesh without_triangles(TetMesh mesh) {
 
 void write_mesh(const TetMesh& mesh, const Prepared& result, const std::optional<TetPartition>& partition,
                 const OutputOptions& outputs, OutputFiles& files) {
-  const MeshToWrite written(mesh, result.midside ? &*result.midside : nullptr);
+  const MeshToWrite written(mesh, result.midside ? &*result.midside : nullptr,
+                            result.bins ? &*result.bins : nullptr);
   if (partition)
     write_tet_mesh(written, *partition, outputs.mesh, &files, outputs.format);
   else
@@ -51,6 +53,8 @@ void write_result(Prepared& result, CommandRun& run) {
     write_mesh(without_triangles(result.mesh), result, partition, line.outputs, files);
   else
     write_mesh(result.mesh, result, partition, line.outputs, files);
+  if (const std::string table = bins_table_of(line); result.bins && !table.empty())
+    files.write(table, table_of_bins(result.mesh, *result.bins));
   if (!line.outputs.boundary.empty())
     write_interfaces(result.mesh, line.outputs.boundary, &files, line.outputs.boundary_format);
   write_report(result.mesh, run, files);

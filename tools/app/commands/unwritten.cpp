@@ -122,6 +122,14 @@ void find_unwritten(const CommandLine& line, const TetMesh& mesh, PrepareReport&
   if (line.outputs.no_boundary) note("faces of sheets", sheets_of(mesh).size(), ", as --no-boundary asks");
   if (!format.names) note("names of materials", mesh.material_names.size(), no_place);
   if (!format.fields) note("fields", mesh.point_fields.size() + mesh.cell_fields.size(), no_place);
+  const std::size_t bins = report.bins ? report.bins->bins.size() : 0;
+  if (format.bins == BinsAs::none || line.outputs.parts > 0) {
+    if (!format.fields)
+      note("sets of bins", bins, "; " + format.extension + " cannot hold them, but the table can");
+    if (format.bins != BinsAs::none) note("sets of bins", bins, ", but their numbers are a field");
+  }
+  if (report.bins && report.bins->poisson && (!format.moduli || line.outputs.parts > 0))
+    note("elastic moduli of bins", bins, "; " + format.extension + " cannot hold them, but the table can");
   find_name_changes(line, mesh, report);
   find_boundary_changes(line, mesh, report);
 }

@@ -11,7 +11,7 @@ from typing import Any, Callable, Optional, Union
 from . import _core
 from ._inputs import Inputs, is_file
 from ._mesh import CheckResult, ShortfallWarning, TetMesh
-from ._options import arguments_of, materials_of
+from ._options import arguments_of, images_of, materials_of
 from ._text import file_name, plain_text
 
 Progress = Union[bool, Callable[[str, float], None], None]
@@ -67,6 +67,25 @@ def improve(tets: Any, *, progress: Progress = None, **options: Any) -> TetMesh:
     those of `tetwright improve --help`: only_below=0.1, free_count=True."""
     inputs = Inputs()
     return _run("improve", inputs, [inputs.add(tets, "mesh")], options, progress)
+
+
+def values(tets: Any, images: Any, *, spacing: Any = None, origin: Any = None, affine: Any = None,
+           progress: Progress = None, **options: Any) -> TetMesh:
+    """Adds the values of images to a tet mesh, which otherwise stays as it is: the mean over each tet as a field of
+    the tets, and the value at each point as a point field.
+
+    tets -- as for `simplify`
+    images -- a dict from the names of the fields to images: files, arrays of values of shape (nx, ny, nz), or images
+        of nibabel
+    spacing, origin, affine -- for arrays, as for `prepare`
+    options -- those of `tetwright values --help`: values_mask=array, values_statistics=["min", "max"],
+        bins={"density": 8}, modulus={"density": [6850, 1.49]}, min_modulus=1
+    """
+    inputs = Inputs(spacing, origin, affine)
+    if not isinstance(images, dict):
+        raise _core.UsageError(f"images is a {type(images).__name__}; give a dict from names of fields to images")
+    names = [inputs.add(tets, "mesh")]
+    return _run("values", inputs, names + images_of(images, inputs), options, progress)
 
 
 def check(tets: Any, *, surface: Any = None, before: Any = None, tolerance: Union[float, str, None] = None,

@@ -86,6 +86,27 @@ class Inputs:
         self._placement_used = spacing is not None
         return spacing
 
+    def add_image(self, value: Any, name: str) -> bytes:
+        """Adds an image and returns its name: a file, an array of values of three axes, or an image of nibabel."""
+        if is_file(value):
+            return file_name(value, name)
+        key = self._unique("image " + name)
+        values, matrix = self._placed_voxels(value, name)
+        self._objects.add(key)
+        self.core.add_values_image(key, image_values(values, name), matrix[:3, 3].tolist(), matrix[:3, :3].tolist())
+        return key
+
+    def add_mask(self, value: Any) -> bytes:
+        """Adds a mask likewise; the text "labels" stays as it is."""
+        if is_file(value):
+            return file_name(value, "values_mask")
+        key = self._unique("values_mask")
+        labels, matrix = self._placed_voxels(value, "values_mask")
+        self._objects.add(key)
+        self.core.add_mask(key, whole_numbers(labels, "values_mask", "labels"), matrix[:3, 3].tolist(),
+                           matrix[:3, :3].tolist())
+        return key
+
     def finish(self) -> None:
         """Rejects positions of voxels if there are no voxels, and files that have the name of an array."""
         if any(p is not None for p in self._placement) and not self._placement_used:
@@ -119,7 +140,24 @@ class Inputs:
         self.core.add_mesh(key, cells.points, cells.tets, tags, cells.names, field_items(cells.point_fields),
                            field_items(cells.cell_fields), cells.dropped, cells.grouped_triangles())
 
+    def _placed_voxels(self, value: Any, name: str) -> tuple[np.ndarray, np.ndarray]:
+        """Returns an array of voxels and the matrix that maps its indices to positions."""
+        if hasattr(value, "affine") and hasattr(value, "dataobj"):  # nibabel
+            return self._placed_array(np.asanyarray(value.dataobj), value.affine)
+        if isinstance(value, np.ndarray):
+            return self._placed_array(value, None)
+        raise _core.UsageError(f"{name} is a {type(value).__name__}; give a file, an array, or an image of nibabel")
+
     def _add_volume(self, key: bytes, name: str, voxels: np.ndarray, own_affine: Optional[np.ndarray]) -> None:
+        voxels, matrix = self._placed_array(voxels, own_affine)
+        if voxels.ndim == 3 and holds_whole_numbers(voxels):
+            add, voxels = self.core.add_volume, whole_numbers(voxels, name, "labels")
+        else:
+            add, voxels = self.core.add_image, image_values(voxels, name)
+        add(key, voxels, matrix[:3, 3].tolist(), matrix[:3, :3].tolist())
+
+    def _placed_array(self, voxels: np.ndarray,
+                      own_affine: Optional[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
         spacing, origin, affine = self._placement
         self._placement_used = True
         if affine is not None and (spacing is not None or origin is not None):
@@ -134,11 +172,7 @@ class Inputs:
             matrix[:3, 3] = _three("origin", 0 if origin is None else origin)
         if voxels.ndim == 4 and voxels.shape[3] == 1:
             voxels = voxels[..., 0]
-        if voxels.ndim == 3 and holds_whole_numbers(voxels):
-            add, voxels = self.core.add_volume, whole_numbers(voxels, name, "labels")
-        else:
-            add, voxels = self.core.add_image, image_values(voxels, name)
-        add(key, voxels, matrix[:3, 3].tolist(), matrix[:3, :3].tolist())
+        return voxels, matrix
 
 
 def _placed(option: str, value: Any) -> np.ndarray:

@@ -42,8 +42,15 @@ def materials_of(value: Any, key: str = "material") -> list[tuple[str, Any]]:
     if isinstance(value, str):
         value = [value]
     if not isinstance(value, list) or not all(isinstance(v, str) and "=" in v for v in value):
-        raise _core.UsageError(f"{key} is a {type(value).__name__}; give a dict from names to surfaces")
+        what = "images" if key == "values" else "surfaces"
+        raise _core.UsageError(f"{key} is a {type(value).__name__}; give a dict from names to {what}")
     return [tuple(v.split("=", 1)) for v in value]  # type: ignore[misc]
+
+
+def images_of(value: Any, inputs: Inputs) -> list[bytes]:
+    """Returns NAME=IMAGE for each image."""
+    return [_name("values", name) + b"=" + inputs.add_image(item, name)
+            for name, item in materials_of(value, "values")]
 
 
 def _flag(key: str, value: Any) -> bool:
@@ -59,6 +66,14 @@ def _texts(key: str, kind: str, value: Any, inputs: Inputs) -> Iterable[bytes]:
     if key in ("material", "sheet", "partition"):
         return [_name(key, name) + b"=" + inputs.add(item, name, made_up=False)
                 for name, item in materials_of(value, key)]
+    if key == "values":
+        return images_of(value, inputs)
+    if key == "values_mask":
+        return [inputs.add_mask(value)]
+    if key == "values_statistics" and isinstance(value, (list, tuple)):
+        return [b",".join(plain_text(v, key) for v in value)]
+    if key in ("bins", "modulus") and isinstance(value, dict):
+        return [_name(key, str(name)) + b"=" + _numbers(key, item) for name, item in value.items()]
     if key == "layer" and isinstance(value, dict):
         return [_name(key, str(name)) + b"=" + _number(key, item) for name, item in value.items()]
     if key == "iso" and isinstance(value, dict):
@@ -91,7 +106,7 @@ def _text(key: str, kind: str, value: Any) -> bytes:
 
 def _name(key: str, name: str) -> bytes:
     if "=" in name or not name:
-        raise _core.UsageError(f"{key}: a material cannot be called '{name}'; give it a name without =")
+        raise _core.UsageError(f"{key}: nothing can be called '{name}'; give a name without =")
     return plain_text(name, key)
 
 
@@ -120,6 +135,13 @@ def _number(key: str, value: Any) -> bytes:
         return plain_text(value, key)
     real = _real(key, value, "a number")
     return (str(int(real)) if isinstance(real, numbers.Integral) else repr(float(real))).encode()
+
+
+def _numbers(key: str, value: Any) -> bytes:
+    """Formats a whole number, or a list of numbers, whose decimal points distinguish a list of one."""
+    if isinstance(value, (list, tuple, np.ndarray)):
+        return b",".join(repr(float(_real(key, item, "numbers"))).encode() for item in value)
+    return _number(key, value)
 
 
 def _label_ranges(value: Any) -> bytes:

@@ -19,6 +19,7 @@
 #include "tetwright/partition.h"
 #include "tetwright/surface_mesh.h"
 #include "tetwright/tet_mesh.h"
+#include "tetwright/value_bins.h"
 
 namespace tetwright {
 
@@ -168,15 +169,19 @@ struct SurfaceWithFields {
   std::vector<MeshField> point_fields;  ///< of surface.points, in the file's order
 };
 
-/// Input of a writer of tet meshes: a view that must not outlive the mesh and the nodes.
+/// Input of a writer of tet meshes: a view that must not outlive the mesh, the nodes and the bins.
 struct MeshToWrite {
   // NOLINTNEXTLINE(google-explicit-constructor): every mesh can be written
-  MeshToWrite(const TetMesh& of_mesh, const MidsideNodes* nodes = nullptr) : mesh(of_mesh), midside(nodes) {}
+  MeshToWrite(const TetMesh& of_mesh, const MidsideNodes* nodes = nullptr, const TetBins* of_bins = nullptr)
+      : mesh(of_mesh), midside(nodes), bins(of_bins) {}
 
   const TetMesh& mesh;
   /// Midside nodes that make the tets second-order elements of ten nodes, for formats that support them;
   /// null: linear tets.
   const MidsideNodes* midside;
+  /// Bins of the tets, for formats that hold them (TetFormatInfo::bins); null: none. Boundaries and
+  /// interfaces are those of the materials all the same, not of the bins.
+  const TetBins* bins;
 
   /// Fields of the points, extended to the midside nodes if there are any.
   std::vector<MeshField> node_fields() const {
@@ -237,6 +242,13 @@ std::string known_extensions(FileKind kind, FileUse use = FileUse::read);
 /// a surface or a tet mesh.
 bool may_hold_surface(const std::string& path);
 
+/// How a format holds bins of tets.
+enum class BinsAs : std::uint8_t {
+  none,       ///< only as a field, if it has fields
+  sets,       ///< as sets of tets with names, beside the materials
+  materials,  ///< instead of the materials: their tets are divided
+};
+
 /// Contents that a tet mesh format can store when it is written.
 struct TetFormatInfo {
   std::string name;       ///< for write_tet_mesh(): "msh41-binary"
@@ -247,6 +259,8 @@ struct TetFormatInfo {
   bool fields;            ///< fields of points and tets
   bool second_order;      ///< tets of ten nodes
   bool parts;             ///< meshes in parts, see TetPartition
+  BinsAs bins;            ///< of meshes that are not in parts
+  bool moduli;            ///< elastic constants of bins
 };
 
 /// Tet mesh formats that can be written. The first one with an extension is its default.

@@ -29,6 +29,7 @@
 #include "tetwright/sizes.h"
 #include "tetwright/surface_mesh.h"
 #include "tetwright/tet_mesh.h"
+#include "tetwright/value_options.h"
 
 namespace tetwright {
 
@@ -302,7 +303,7 @@ struct KeepOptions {
 
 /// Options of prepare(), mesh_scans(), simplify_mesh() and improve_mesh(). prepare() uses all of them;
 /// mesh_scans() ignores `shapes` and `schedule`; simplify_mesh() ignores `cells`, `bodies` and `labels`;
-/// improve_mesh() uses only `shapes`, `feature_angle`, `order`, `seed`, `limits` and `acceptance`.
+/// improve_mesh() uses only `shapes`, `values`, `feature_angle`, `order`, `seed`, `limits` and `acceptance`.
 struct PrepareOptions {
   CellOptions cells;
   BodyOptions bodies;
@@ -313,6 +314,7 @@ struct PrepareOptions {
   FeatureAngle feature_angle;  ///< determines which edges stay sharp
   TargetOptions target;
   SizeOptions sizes;
+  ValueOptions values;  ///< images whose values the result has as fields
   ShapeOptions shapes;
   ScheduleOptions schedule;
   int order = 1;               ///< order of the elements, 1 or 2; 2 adds midside nodes
@@ -421,6 +423,8 @@ struct PrepareReport {
   bool falls_short() const;
   RequestedSizes sizes;
   std::optional<EdgeLengthReport> edge_lengths;  ///< if sizes are requested
+  std::vector<ValueReport> values;               ///< one for each image
+  std::optional<BinsReport> bins;                ///< if bins are requested
   double seconds_read = 0, seconds_mesh = 0, seconds_write = 0, seconds_total = 0;
   LoopTimes loops_read, loops_mesh, loops_write, loops_total;  ///< loops of these stages
 };
@@ -429,6 +433,7 @@ struct PrepareReport {
 struct Prepared {
   TetMesh mesh;                         ///< input units, with its interfaces
   std::optional<MidsideNodes> midside;  ///< with order 2
+  std::optional<TetBins> bins;          ///< with ValueOptions::bins_of
   PrepareReport report;                 ///< findings, measures and shortfalls
   /// Surface with which to compare the mesh: the input surface, the boundary and interfaces of a segmented
   /// volume's dense mesh, or those of the input tet mesh. Null unless KeepOptions::reference.
@@ -476,5 +481,9 @@ Prepared simplify_mesh(Input mesh, const PrepareOptions& options = {}, Progress*
 /// Improves the shapes of a tet mesh at about the same number of tets. Needs no target; otherwise like
 /// prepare().
 Prepared improve_mesh(Input mesh, const PrepareOptions& options = {}, Progress* progress = nullptr);
+
+/// Adds the values of images to a tet mesh, which otherwise stays as it is, with its fields. Uses only
+/// `values`, `material_field`, `limits` and `acceptance`.
+Prepared add_values(Input mesh, const PrepareOptions& options, Progress* progress = nullptr);
 
 }  // namespace tetwright

@@ -41,7 +41,8 @@ enum class Task {
   prepare,   ///< scans to a simulation mesh
   mesh,      ///< scans to a dense mesh
   simplify,  ///< a tet mesh to one with fewer tets
-  improve    ///< better shapes at about the same number of tets
+  improve,   ///< better shapes at about the same number of tets
+  values     ///< values of images on a tet mesh that stays as it is
 };
 /// Name of the task's command, such as "prepare".
 const char* name_of(Task task);
@@ -76,6 +77,8 @@ struct PrepareRun {
   /// The dense mesh of a volume in bricks, as far as its coarsened mesh no longer shows it.
   std::optional<OriginalMesh> original;
   std::shared_ptr<const BrickScratch> scratch;  ///< Prepared::scratch
+  /// Labels of the segmented volume, with ValueOptions::own_label.
+  std::shared_ptr<const LabelVolume> value_labels;
 };
 
 /// Adds diagnostics for contents that a reader dropped.
@@ -106,6 +109,12 @@ struct TetInput {
 /// \throws UsageError if the file is of another kind, or the target exceeds the mesh's number of tets
 /// \throws InputError if the file cannot be read or no tet is left
 TetInput read_tets(Input from, PrepareRun& run);
+
+/// Reads a tet mesh that stays as it is, finds its boundary and interfaces, and measures it.
+///
+/// \throws UsageError if the file is of another kind
+/// \throws InputError if the file cannot be read
+TetMesh read_tets_unchanged(Input from, PrepareRun& run);
 
 /// Meshes the input at the requested resolution, or otherwise at the one that the target requires.
 ///
@@ -186,8 +195,9 @@ bool changed_on_purpose(const PrepareReport& report);
 /// \pre `mesh` has its interfaces.
 void assess(const TetMesh& mesh, PrepareRun& run);
 
-/// Runs prepare(), mesh_scans(), simplify_mesh() or improve_mesh() with the threads of the caller (see
-/// with_threads()). The report stays in `run`, so that findings can be read even after an exception.
+/// Runs prepare(), mesh_scans(), simplify_mesh(), improve_mesh() or add_values() with the threads of the
+/// caller (see with_threads()). The report stays in `run`, so that findings can be read even after an
+/// exception.
 Prepared carry_out(std::vector<Input> inputs, PrepareRun& run);
 
 /// Checks the options of a task.

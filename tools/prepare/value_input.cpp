@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/prepare/value_input.h"
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <string>
+#include <utility>
+#include <variant>
+
+#include "common/message_text.h"
+#include "tetwright/error.h"
+#include "tetwright/io.h"
+#include "tetwright/resources.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Space of the result's coordinates; empty: unknown.
+std::string space_of_mesh(const PrepareReport& report) { return report.volume ? report.volume->space : ""; }
+
+/// Brings a grid into the space of the mesh, and reports what was done.
+/// \param what "image" or "mask"
+void adapt_space(LabelGrid& grid, const std::string& file, const std::string& what, PrepareReport& report) {
+  const std::string of_mesh = space_of_mesh(report), before = grid.space;
+  if (before == of_mesh) return;
+  const bool converted = change_space(grid, of_mesh);
+  report.diagnostics.push_back(
+      {.code = converted ? DiagnosticCode::space_converted : DiagnosticCode::space_unknown,
+       .file = file,
+       .what = what + " in another space, " + (before.empty() ? "unknown" : before),
+       .count = 1,
+       .done = converted ? "brought into that of the mesh, " + of_mesh
+                         : "taken as it is, since it cannot be compared with that of the mesh, " +
+                               (of_mesh.empty() ? std::string("unknown") : of_mesh)});
+}
+
+/// Sets a field, in place of one with this name.
+void set_field(std::vector<MeshField>& fields, MeshField field, const char* kind, const std::string& file,
+               PrepareReport& report) {
+  if (std::erase_if(fields, [&](const MeshField& f) { return f.name == field.name; }) > 0)
+    report.diagnostics.push_back({.code = DiagnosticCode::input_dropped,
+                                  .file = report.inputs.front(),
+                                  .what = std::string(kind) + " field '" + field.name + "'",
+                                  .count = 1,
+                                  .done = "replaced by the values of " + file});
+  fields.push_back(std::move(field));
+}
+
+ValueReport report_of(const ValueImage& image, const ImageValues& values, const TetMesh& mesh) {
+  ValueReport report;
+  report.name = image.name;
+  report.file = image.file;
+  report.lowest = values.lowest;
+  report.highest = values.highest;
+  report.partly_outside = values.partly_outside;
+  report.nearest = values.nearest;
+  report.nearest_points = values.nearest_points;
+  report.not_finite = values.not_finite;
+  const auto [smallest, largest] = std::minmax_element(values.mean.begin(), values.mean.end());
+  report.smallest = *smallest;
+  report.largest = *largest;
+  double volume = 0, sum = 0;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const Vec3& a = mesh.points[mesh.tets[t][0]];
+    const auto edge = [&](std::size_t i) { return Vec3(mesh.points[mesh.tets[t][i]] - a); };
+    const double six = std::abs(edge(1).cross(edge(2)).dot(edge(3)));
+    volume += six;
+    sum += six * values.mean[t];
+  }
+  report.mean = volume > 0 ? sum / volume : report.smallest;
+  return report;
+}
+
+void report_findings(const ValueReport& found, const std::string& counting, PrepareReport& report) {
+  const auto add = [&](DiagnosticCode code, const char* what, const FoundPlaces& places, std::string done) {
+    if (places.count > 0)
+      report.diagnostics.push_back({.code = code,
+                                    .file = found.file,
+                                    .what = what,
+                                    .count = places.count,
+                                    .done = std::move(done),
+                                    .places = {places.first}});
+  };
+  if (found.not_finite > 0)
+    report.diagnostics.push_back({.code = DiagnosticCode::values_not_finite,
+                                  .file = found.file,
+                                  .what = "voxels that are not finite",
+                                  .count = found.not_finite,
+                                  .done = "they do not count"});
+  add(DiagnosticCode::values_outside, "tets with a part outside the image", found.partly_outside,
+      "this part does not count");
+  add(DiagnosticCode::values_nearest, "tets without a voxel that counts", found.nearest,
+      "they have the value of the nearest one" + counting);
+  add(DiagnosticCode::values_nearest, "points without a voxel that counts", found.nearest_points,
+      "they have the value of the nearest one" + counting);
+}
+
+}  // namespace
+
+void check_value_options(Task task, const ValueOptions& options) {
+  std::set<std::string> names;
+  for (const ValueImage& image : options.images) {
+    if (image.name.empty())
+      throw UsageError("the values of " + image.file + " need a name; give NAME=" + image.file);
+    if (!names.insert(image.name).second)
+      throw UsageError("two images are called '" + image.name + "'; give each its own name");
+  }
+  if (options.images.empty()) {
+    if (task == Task::values) throw UsageError("there is no image; give NAME=IMAGE after the mesh");
+    const char* const other = !options.mask_file.empty() || options.own_label ? "--values-mask"
+                              : options.minimum || options.maximum || options.deviation
+                                  ? "--values-statistics"
+                              : !options.bins_of.empty() ? "--bins"
+                              : options.modulus          ? "--modulus"
+                                                         : nullptr;
+    if (other)
+      throw UsageError(std::string(other) + " is for the values of an image; give --values NAME=IMAGE");
+  }
+  if (options.own_label && task != Task::prepare && task != Task::mesh)
+    throw UsageError(
+        "--values-mask labels is for the segmented volume that 'prepare' and 'mesh' read; give a volume, "
+        "--values-mask FILE");
+  if (!options.bins_of.empty() && !names.contains(options.bins_of))
+    throw UsageError("--bins " + options.bins_of + ": no image has this name; give --values " +
+                     options.bins_of + "=IMAGE");
+  if (!options.bins_of.empty() && options.bins.count == 0 && options.bins.edges.empty())
+    throw UsageError("--bins needs a number of bins, or the values between them");
+  if (options.modulus && options.bins_of.empty())
+    throw UsageError("--modulus gives each bin an elastic modulus; give --bins NAME=N");
+}
+
+ValueInputs read_value_inputs(PrepareRun& run) {
+  const ValueOptions& options = run.options.values;
+  ValueInputs inputs;
+  if (options.images.empty()) return inputs;
+  run.progress.begin_stage("read images");
+  for (const ValueImage& image : options.images) {
+    inputs.images.push_back(image.image ? image.image
+                                        : std::make_shared<const ImageVolume>(read_image(image.file)));
+    run.progress.throw_if_stopped();
+    if (const std::size_t channels = inputs.images.back()->channels.size(); channels != 1)
+      throw InputError(image.file, 0,
+                       "has " + std::to_string(channels) +
+                           " channels, and values are taken from images of one; save the channel alone");
+  }
+  if (!options.mask_file.empty())
+    inputs.mask = options.mask ? options.mask
+                               : std::make_shared<const LabelVolume>(read_label_volume(options.mask_file));
+  return inputs;
+}
+
+void check_images_meet(const ValueInputs& inputs, const Box3& box, const PrepareRun& run) {
+  for (std::size_t i = 0; i < inputs.images.size(); ++i) {
+    LabelGrid grid = *inputs.images[i];
+    (void)change_space(grid, space_of_mesh(run.report));
+    check_image_meets(grid, box.low, box.high, run.options.values.images[i].file, run.report.inputs.front());
+  }
+}
+
+Box3 box_of_scan(const ScanInput& input) {
+  Box3 box;
+  if (const auto* surfaces = std::get_if<MesherInput>(&input)) {
+    for (const MesherInput::Body& body : surfaces->bodies)
+      for (const Vec3& p : body.surface.points) box.add(p);
+    return box;
+  }
+  const auto& labels = std::get<LabelInput>(input);
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3 index;
+    for (int a = 0; a < 3; ++a)
+      index[a] = (corner >> a & 1) ? labels.size[static_cast<std::size_t>(a)] - 0.5 : -0.5;
+    box.add(labels.origin + labels.directions * index);
+  }
+  return box;
+}
+
+std::shared_ptr<const LabelVolume> copy_labels(const LabelSource& source) {
+  auto copy = std::make_shared<LabelVolume>();
+  static_cast<LabelGrid&>(*copy) = source.grid();
+  require_memory(static_cast<double>(source.grid().voxels()) * sizeof(MaterialTag),
+                 "the labels for --values-mask labels", "crop the volume, or make it coarser");
+  copy->labels.resize(source.grid().voxels());
+  const auto slice = static_cast<std::size_t>(copy->size[0]) * static_cast<std::size_t>(copy->size[1]);
+  const int step = std::max(1, source.block()[2]);
+  for (int z = 0; z < copy->size[2]; z += step) {
+    const int end = std::min(z + step, copy->size[2]);
+    source.read({0, 0, z}, {copy->size[0], copy->size[1], end},
+                std::span(copy->labels)
+                    .subspan(static_cast<std::size_t>(z) * slice, static_cast<std::size_t>(end - z) * slice));
+  }
+  return copy;
+}
+
+void take_values(ValueInputs inputs, Prepared& result, PrepareRun& run) {
+  const ValueOptions& options = run.options.values;
+  PrepareReport& report = run.report;
+  TetMesh& mesh = result.mesh;
+  if (options.images.empty()) return;
+  std::shared_ptr<const LabelVolume> mask = options.own_label ? run.value_labels : inputs.mask;
+  if (mask && !options.own_label && mask->space != space_of_mesh(report)) {
+    auto adapted = std::make_shared<LabelVolume>(*mask);
+    adapt_space(*adapted, options.mask_file, "mask", report);
+    mask = adapted;
+  }
+  const std::string counting = options.own_label ? " of their material" : mask ? " of the mask" : "";
+  for (std::size_t i = 0; i < options.images.size(); ++i) {
+    const ValueImage& from = options.images[i];
+    run.progress.begin_stage("values");
+    std::shared_ptr<const ImageVolume> image = std::move(inputs.images[i]);
+    if (image->space != space_of_mesh(report)) {
+      // Only the grid changes, but it belongs to the caller.
+      auto adapted = image.use_count() == 1 ? std::const_pointer_cast<ImageVolume>(image)
+                                            : std::make_shared<ImageVolume>(*image);
+      adapt_space(*adapted, from.file, "image", report);
+      image = adapted;
+    }
+    const ImageMask counts = !mask               ? ImageMask()
+                             : options.own_label ? ImageMask::own_label(*image, *mask)
+                                                 : ImageMask::nonzero(*image, *mask);
+    ImageValues values =
+        image_values(mesh, *image, counts, {0, options.minimum, options.maximum, options.deviation},
+                     from.file, report.inputs.front(), &run.progress);
+    report.values.push_back(report_of(from, values, mesh));
+    report_findings(report.values.back(), counting, report);
+    if (options.bins_of == from.name) {
+      result.bins = bin_tets(mesh, from.name, values.mean, options.bins);
+      if (options.modulus) set_moduli(*options.modulus, *result.bins);
+    }
+    const auto set_cells = [&](const char* suffix, std::vector<double>& of_tets) {
+      if (!of_tets.empty())
+        set_field(mesh.cell_fields, {from.name + suffix, 1, false, std::move(of_tets)}, "cell", from.file,
+                  report);
+    };
+    set_cells("", values.mean);
+    set_cells("_min", values.minimum);
+    set_cells("_max", values.maximum);
+    set_cells("_deviation", values.deviation);
+    set_field(mesh.point_fields, {from.name, 1, false, std::move(values.at_points)}, "point", from.file,
+              report);
+    if (result.bins && options.bins_of == from.name)
+      set_field(mesh.cell_fields, field_of_bins(*result.bins), "cell", from.file, report);
+  }
+  if (result.bins) {
+    report.bins = *result.bins;
+    report.bins->of_tets = {};
+  }
+  decide_severities(run.options.acceptance, report);
+}
+
+}  // namespace tetwright

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "tetwright/value_options.h"
+
+namespace tetwright {
+
+nlohmann::json values_json(const std::vector<ValueReport>& values);
+nlohmann::json bins_json(const BinsReport& bins);
+
+}  // namespace tetwright
