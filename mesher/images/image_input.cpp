@@ -100,13 +100,6 @@ void check_probabilities(const ImageVolume& image, const std::string& file, cons
   }
 }
 
-std::vector<std::uint64_t> voxels_by_band(const MaterialImage& image) {
-  const std::size_t n = image.channels().front().size();
-  std::vector<std::uint64_t> counts(image.bands(), 0);
-  for (std::size_t i = 0; i < n; ++i) ++counts[image.band(i)];
-  return counts;
-}
-
 struct Divided {
   std::shared_ptr<MaterialImage> image;
   std::vector<std::string> names;    ///< of the materials
@@ -148,12 +141,12 @@ Divided divide_by_channels(ImageVolume& image, const std::string& file, const Im
   divided.numbers.resize(divided.image->bands());
   std::iota(divided.numbers.begin(), divided.numbers.end(), std::size_t{0});
   if (choice.smoothing > 0) {
-    const std::vector<std::uint64_t> voxels = voxels_by_band(*divided.image);
+    const std::vector<BandSize> sizes = sizes_of(*divided.image, bands_of(*divided.image));
     std::vector<std::vector<float>> channels = std::move(*divided.image).take_channels();
     for (std::vector<float>& channel : channels)
       smooth_image(image.size, choice.smoothing, channel, progress);
     divided.image = make(std::move(channels));
-    keep_volumes(*divided.image, voxels, progress);
+    keep_volumes(*divided.image, sizes, progress);
   }
   return divided;
 }
@@ -191,16 +184,17 @@ LabelInput make_image_input(ImageVolume image, const std::string& file, const Im
   if (progress) progress->throw_if_stopped();
   LabelInput result;
   set_grid(image, file, result);
-  const std::vector<std::uint64_t> counts = voxels_by_band(*divided.image);
-  const std::vector<double> volumes = volumes_of(*divided.image);
-  std::vector<std::size_t> band_of(counts.size());
-  for (std::size_t b = 0; b < counts.size(); ++b) band_of[divided.numbers[b]] = b;
-  result.band_regions.assign(counts.size(), on_interface);
+  result.regions = bands_of(*divided.image);
+  const std::vector<BandSize> sizes = sizes_of(*divided.image, result.regions);
+  std::vector<std::size_t> band_of(sizes.size());
+  for (std::size_t b = 0; b < sizes.size(); ++b) band_of[divided.numbers[b]] = b;
+  result.band_regions.assign(sizes.size(), on_interface);
   result.band_regions[0] = outside_region;
-  for (std::size_t material = 1; material < counts.size(); ++material) {
+  for (std::size_t material = 1; material < sizes.size(); ++material) {
     const std::size_t band = band_of[material];
     const std::string& name = divided.names[material - 1];
-    if (counts[band] == 0) {
+    const auto n = static_cast<std::size_t>(sizes[band].voxels);
+    if (n == 0) {
       result.findings.push_back({.code = DiagnosticCode::masks_empty,
                                  .file = file,
                                  .what = "material '" + name + "' that no voxel has",
@@ -208,13 +202,12 @@ LabelInput make_image_input(ImageVolume image, const std::string& file, const Im
                                  .done = "not in the mesh"});
       continue;
     }
-    const auto n = static_cast<std::size_t>(counts[band]);
-    result.materials.push_back({name, static_cast<MaterialTag>(material), n, n, {}, volumes[band]});
+    result.materials.push_back({name, static_cast<MaterialTag>(material), n, n, {}, sizes[band].volume});
     result.band_regions[band] = static_cast<RegionIndex>(result.materials.size());
   }
   if (result.materials.empty())
     throw NothingToMeshError(file + ": no point is in any of its materials; see --outside-probability");
-  result.regions = regions_of(*divided.image, result.band_regions);
+  result.regions.renumber(result.band_regions);
   result.image = std::move(divided.image);
   prepare_regions(result, choice.min_voxels, "voxels, none of them outside", progress);
   return result;

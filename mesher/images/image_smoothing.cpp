@@ -85,7 +85,7 @@ std::vector<double> volume_keeping_thresholds(std::vector<float> before, const s
   return moved;
 }
 
-void keep_volumes(MaterialImage& image, const std::vector<std::uint64_t>& voxels, const Progress* progress) {
+void keep_volumes(MaterialImage& image, const std::vector<BandSize>& sizes, const Progress* progress) {
   const std::size_t channels = image.channels().size(), n = image.channels().front().size();
   std::vector<double> offsets(channels, 0);
   std::vector<float> lacks;
@@ -93,7 +93,7 @@ void keep_volumes(MaterialImage& image, const std::vector<std::uint64_t>& voxels
     bool changed = false;
     for (std::size_t c = 0; c < channels; ++c) {
       if (progress) progress->throw_if_stopped();
-      const auto wanted = static_cast<std::size_t>(voxels[c + 1]);
+      const auto wanted = static_cast<std::size_t>(sizes[c + 1].voxels);
       if (wanted == 0 || wanted == n) continue;
       // How much the channel lacks to be the largest.
       lacks.resize(n);

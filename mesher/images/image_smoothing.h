@@ -25,9 +25,9 @@ std::vector<double> volume_keeping_thresholds(std::vector<float> before, const s
 
 /// Sets the offsets of channels for which each is the largest in as many voxels as before smoothing, within a
 /// thousandth. Takes some rounds, which go over all channels one after the other.
-/// \param voxels by band, before smoothing
+/// \param sizes of the bands before smoothing
 /// \param progress may be null
 /// \throws Interrupted
-void keep_volumes(MaterialImage& image, const std::vector<std::uint64_t>& voxels, const Progress* progress);
+void keep_volumes(MaterialImage& image, const std::vector<BandSize>& sizes, const Progress* progress);
 
 }  // namespace tetwright

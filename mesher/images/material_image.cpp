@@ -89,64 +89,115 @@ double MaterialImage::contrast(std::size_t voxel, std::size_t a, std::size_t b) 
   return nested_ ? channel(0, voxel) : 0.5 * (band_value(a, voxel) - band_value(b, voxel));
 }
 
-std::vector<double> volumes_of(const MaterialImage& image) {
-  constexpr int along = ImageTuning::volume_samples_along;
+namespace {
+
+/// Counts samples of a voxel by band.
+class VoxelSampler {
+ public:
+  static constexpr int along = ImageTuning::volume_samples_along, samples = along * along * along;
+
+  explicit VoxelSampler(const MaterialImage& image) : image_(image) {}
+
+  /// \param near indices along each axis of the voxel and those around it; beyond the volume the closest one
+  void add(const std::array<std::array<int, 3>, 3>& near, std::vector<std::uint64_t>& counts) {
+    for (int s = 0; s < samples; ++s) {
+      const std::array<int, 3> sample{s % along, s / along % along, s / (along * along)};
+      std::array<std::size_t, 3> low;
+      std::array<double, 3> share;
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double offset = (sample[a] + 0.5) / along - 0.5;
+        low[a] = offset < 0 ? 0 : 1;
+        share[a] = offset < 0 ? offset + 1 : offset;
+      }
+      std::array<std::size_t, 8> corners;
+      std::array<double, 8> weights;
+      for (std::size_t k = 0; k < 8; ++k) {
+        const std::array<std::size_t, 3> upper{k & 1, k >> 1 & 1, k >> 2};
+        weights[k] = 1;
+        for (std::size_t a = 0; a < 3; ++a) weights[k] *= upper[a] ? share[a] : 1 - share[a];
+        corners[k] =
+            image_.voxel(near[0][low[0] + upper[0]], near[1][low[1] + upper[1]], near[2][low[2] + upper[2]]);
+      }
+      ++counts[image_.band_between(corners, weights, values_)];
+    }
+  }
+
+ private:
+  const MaterialImage& image_;
+  std::vector<double> values_;
+};
+
+/// Three slices of bands around one.
+class BandSlices {
+ public:
+  explicit BandSlices(const RegionGrid& bands)
+      : bands_(bands),
+        size_(static_cast<std::size_t>(bands.size()[0]) * static_cast<std::size_t>(bands.size()[1])) {}
+
+  void read(int z) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      slices_[k].resize(size_);
+      const int at = std::clamp(z + static_cast<int>(k) - 1, 0, bands_.size()[2] - 1);
+      bands_.read_slices(at, at + 1, slices_[k]);
+    }
+  }
+  RegionIndex at(int x, int y, std::size_t slice) const {
+    return slices_[slice][static_cast<std::size_t>(y) * static_cast<std::size_t>(bands_.size()[0]) +
+                          static_cast<std::size_t>(x)];
+  }
+
+ private:
+  const RegionGrid& bands_;
+  std::size_t size_;
+  std::array<std::vector<RegionIndex>, 3> slices_;
+};
+
+}  // namespace
+
+std::vector<BandSize> sizes_of(const MaterialImage& image, const RegionGrid& bands) {
   const VoxelIndex& size = image.size();
   const auto slices = static_cast<std::size_t>(size[2]);
-  // Counts of samples in each slice.
-  std::vector<std::vector<std::uint64_t>> counts(slices);
+  struct Counts {
+    std::vector<std::uint64_t> voxels, samples;
+  };
+  std::vector<Counts> counts(slices);
   parallel_for(0, slices, ImageGrains::slices, [&](std::size_t begin, std::size_t end) {
-    std::vector<double> values;
+    VoxelSampler sampler(image);
+    BandSlices near_bands(bands);
     for (std::size_t z = begin; z < end; ++z) {
-      std::vector<std::uint64_t>& count = counts[z];
-      count.assign(image.bands(), 0);
+      near_bands.read(static_cast<int>(z));
+      Counts& count = counts[z];
+      count.voxels.assign(image.bands(), 0);
+      count.samples.assign(image.bands(), 0);
+      std::array<std::array<int, 3>, 3> near{};
       for (int y = 0; y < size[1]; ++y)
         for (int x = 0; x < size[0]; ++x) {
           const VoxelIndex at{x, y, static_cast<int>(z)};
-          // The voxels around it, of which beyond the volume the closest one is taken.
-          std::array<std::array<int, 3>, 3> near{};
           for (std::size_t a = 0; a < 3; ++a)
             for (int step = 0; step < 3; ++step)
               near[a][static_cast<std::size_t>(step)] = std::clamp(at[a] + step - 1, 0, size[a] - 1);
-          const std::size_t own = image.band(image.voxel(x, y, at[2]));
+          const RegionIndex own = near_bands.at(x, y, 1);
+          ++count.voxels[own];
           bool mixed = false;
           for (std::size_t k = 0; k < 27 && !mixed; ++k)
-            mixed = image.band(image.voxel(near[0][k % 3], near[1][k / 3 % 3], near[2][k / 9])) != own;
-          if (!mixed) {
-            count[own] += along * along * along;
-            continue;
-          }
-          for (int s = 0; s < along * along * along; ++s) {
-            const std::array<int, 3> sample{s % along, s / along % along, s / (along * along)};
-            std::array<std::size_t, 3> low;
-            std::array<double, 3> share;
-            for (std::size_t a = 0; a < 3; ++a) {
-              const double offset = (sample[a] + 0.5) / along - 0.5;
-              low[a] = offset < 0 ? 0 : 1;
-              share[a] = offset < 0 ? offset + 1 : offset;
-            }
-            std::array<std::size_t, 8> corners;
-            std::array<double, 8> weights;
-            for (std::size_t k = 0; k < 8; ++k) {
-              const std::array<std::size_t, 3> upper{k & 1, k >> 1 & 1, k >> 2};
-              weights[k] = 1;
-              for (std::size_t a = 0; a < 3; ++a) weights[k] *= upper[a] ? share[a] : 1 - share[a];
-              corners[k] = image.voxel(near[0][low[0] + upper[0]], near[1][low[1] + upper[1]],
-                                       near[2][low[2] + upper[2]]);
-            }
-            ++count[image.band_between(corners, weights, values)];
-          }
+            mixed = near_bands.at(near[0][k % 3], near[1][k / 3 % 3], k / 9) != own;
+          if (mixed)
+            sampler.add(near, count.samples);
+          else
+            count.samples[own] += VoxelSampler::samples;
         }
     }
   });
-  std::vector<double> volumes(image.bands(), 0);
-  for (const std::vector<std::uint64_t>& count : counts)
-    for (std::size_t b = 0; b < volumes.size(); ++b)
-      volumes[b] += static_cast<double>(count[b]) / (along * along * along);
-  return volumes;
+  std::vector<BandSize> sizes(image.bands());
+  for (const Counts& count : counts)
+    for (std::size_t b = 0; b < sizes.size(); ++b) {
+      sizes[b].voxels += count.voxels[b];
+      sizes[b].volume += static_cast<double>(count.samples[b]) / VoxelSampler::samples;
+    }
+  return sizes;
 }
 
-RegionGrid regions_of(const MaterialImage& image, std::span<const RegionIndex> regions) {
+RegionGrid bands_of(const MaterialImage& image) {
   RegionGrid grid(image.size());
   const VoxelIndex& size = image.size();
   const std::size_t slice = static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]);
@@ -156,7 +207,7 @@ RegionGrid regions_of(const MaterialImage& image, std::span<const RegionIndex> r
     layer.resize(static_cast<std::size_t>(last - first) * slice);
     const std::size_t start = static_cast<std::size_t>(first) * slice;
     parallel_for(0, layer.size(), ImageGrains::voxels, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) layer[i] = regions[image.band(start + i)];
+      for (std::size_t i = begin; i < end; ++i) layer[i] = static_cast<RegionIndex>(image.band(start + i));
     });
     grid.write_slices(first, layer);
   }

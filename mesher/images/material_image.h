@@ -84,13 +84,18 @@ class MaterialImage {
   std::vector<double> offsets_;
 };
 
-/// The volume of each band between its interfaces, voxels: counted at 4^3 points in each voxel that has a
-/// neighbour in another band. Voxels extend half a step beyond the outermost centres, where values continue.
-/// Parallel; the result does not depend on the number of threads.
-std::vector<double> volumes_of(const MaterialImage& image);
+/// The band of each voxel. Parallel.
+RegionGrid bands_of(const MaterialImage& image);
 
-/// The region of each voxel. Parallel.
-/// \param regions of the bands
-RegionGrid regions_of(const MaterialImage& image, std::span<const RegionIndex> regions);
+/// Voxels and volume of a band.
+struct BandSize {
+  std::uint64_t voxels = 0;
+  double volume = 0;  ///< between its interfaces, voxels
+};
+
+/// The size of each band. Volumes are counted at 4^3 points in each voxel that has a neighbour in another
+/// band; voxels extend half a step beyond the outermost centres, where values continue. Parallel; the result
+/// does not depend on the number of threads. \param bands of the voxels
+std::vector<BandSize> sizes_of(const MaterialImage& image, const RegionGrid& bands);
 
 }  // namespace tetwright

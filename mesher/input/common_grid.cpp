@@ -50,17 +50,20 @@ void CommonGrid::add(LabelGrid& grid, const std::string& file) {
 
 std::vector<Diagnostic> CommonGrid::findings() const {
   std::vector<Diagnostic> findings;
-  for (const auto& [spaces, done] :
-       {std::pair(&converted_, "brought into that of the first one, " + grid_.space),
-        std::pair(&unknown_, "taken as they are, since it cannot be compared with that of the first one, " +
-                                 (grid_.space.empty() ? std::string("unknown") : grid_.space))})
-    for (const auto& [space, count] : *spaces)
+  const auto add = [&](DiagnosticCode code, const std::map<std::string, std::size_t>& spaces,
+                       const std::string& done) {
+    for (const auto& [space, count] : spaces)
       findings.push_back(
-          {.code = DiagnosticCode::space_converted,
+          {.code = code,
            .file = first_file_,
            .what = (count == 1 ? "input" : "inputs") + std::string(" in another space, ") + space,
            .count = count,
            .done = done});
+  };
+  add(DiagnosticCode::space_converted, converted_, "brought into that of the first one, " + grid_.space);
+  add(DiagnosticCode::space_unknown, unknown_,
+      "taken as they are, since it cannot be compared with that of the first one, " +
+          (grid_.space.empty() ? std::string("unknown") : grid_.space));
   return findings;
 }
 

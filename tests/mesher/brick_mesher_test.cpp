@@ -13,6 +13,7 @@
 #include "mesher/field_mesher.h"
 #include "tests/mesher/checked_labels.h"
 #include "tests/mesher/label_volumes.h"
+#include "tetwright/image_input.h"
 #include "tetwright/resources.h"
 
 namespace tetwright::brick_mesher_test {
@@ -184,6 +185,22 @@ TEST(BrickMesher, ThinLayers) {
   });
   // Moves reach farther than the usual halo.
   EXPECT_GT(expect_same_tets(labels, cells_of(1), {2}, 6).repeated, 0U);
+}
+
+TEST(BrickMesher, Images) {
+  ImageVolume image;
+  image.size = {40, 34, 30};
+  std::vector<float>& values = image.channels.emplace_back();
+  for (int z = 0; z < image.size[2]; ++z)
+    for (int y = 0; y < image.size[1]; ++y)
+      for (int x = 0; x < image.size[0]; ++x)
+        values.push_back(static_cast<float>(std::sin(0.4 * x) * std::cos(0.4 * y) +
+                                            std::sin(0.4 * y) * std::cos(0.4 * z) +
+                                            std::sin(0.4 * z) * std::cos(0.4 * x)));
+  ImageChoice choice;
+  choice.isos = {{"low", -0.3}, {"high", 0.4}};
+  expect_same_tets(make_image_input(std::move(image), "image", choice, nullptr, nullptr), cells_of(1), {2, 3},
+                   7);
 }
 
 TEST(BrickMesher, SameBytesForAnySideOfBricks) {

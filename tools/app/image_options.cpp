@@ -12,8 +12,6 @@ namespace tetwright {
 
 namespace {
 
-constexpr Range any_number{-max_number, max_number, true, "a number"};
-
 IsoValue parse_iso(const std::string& text) {
   IsoValue iso;
   std::string value = text;

@@ -22,6 +22,7 @@ struct Range {
   bool contains(double x) const { return (low_included ? x >= low : x > low) && x <= high; }
 };
 inline constexpr double max_number = std::numeric_limits<double>::max();
+inline constexpr Range any_number{-max_number, max_number, true, "a number"};
 inline constexpr Range positive{0, max_number, false, "a number above 0"};
 inline constexpr Range not_negative{0, max_number, true, "a number of at least 0"};
 /// Steradians. The upper bound is the solid angle at a vertex of the regular tet, the maximum for a tet's

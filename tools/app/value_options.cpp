@@ -15,8 +15,6 @@ namespace tetwright {
 
 namespace {
 
-constexpr Range any_number{-max_number, max_number, true, "a number"};
-
 std::vector<std::string> comma_separated_parts(const std::string& text) {
   std::vector<std::string> parts(1);
   for (const char c : text)

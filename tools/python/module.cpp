@@ -307,12 +307,13 @@ PYBIND11_MODULE(_core, module) {
            [](NamedInputs& to, const std::string& name, const Pixels& values,
               const std::array<double, 3>& origin, const std::array<std::array<double, 3>, 3>& directions) {
              to.values[name] = to_image(name, values, origin, directions);
-           });
-  .def("add_mask",
-       [](NamedInputs& to, const std::string& name, const Labels& labels, const std::array<double, 3>& origin,
-          const std::array<std::array<double, 3>, 3>& directions) {
-         to.masks[name] = std::make_shared<const LabelVolume>(to_volume(name, labels, origin, directions));
-       })
+           })
+      .def("add_mask",
+           [](NamedInputs& to, const std::string& name, const Labels& labels,
+              const std::array<double, 3>& origin, const std::array<std::array<double, 3>, 3>& directions) {
+             to.masks[name] =
+                 std::make_shared<const LabelVolume>(to_volume(name, labels, origin, directions));
+           })
       .def("add_values_image", [](NamedInputs& to, const std::string& name, const Pixels& values,
                                   const std::array<double, 3>& origin,
                                   const std::array<std::array<double, 3>, 3>& directions) {

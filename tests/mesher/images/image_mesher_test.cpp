@@ -13,6 +13,7 @@
 #include "tetwright/error.h"
 #include "tetwright/image_input.h"
 #include "tetwright/mesh_quality.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::image_mesher_test {
 namespace {
@@ -265,6 +266,41 @@ TEST(ImageMesher, SmoothedChannelsKeepVolumes) {
     EXPECT_NEAR(static_cast<double>(smooth.materials[m].voxels),
                 static_cast<double>(rough.materials[m].voxels),
                 2 + 0.002 * static_cast<double>(rough.materials[m].voxels));
+}
+
+TEST(ImageMesher, TheSameForAnyNumberOfThreads) {
+  Random random(8);
+  const ImageVolume image = image_of(
+      {26, 25, 27}, {[&](const Vec3& p) { return 9 - (p - Vec3(12, 13, 12)).norm() + random.uniform(); }});
+  ImageChoice choice;
+  choice.isos = {{"body", std::nullopt}, {"core", 5.0}};
+  choice.smoothing = 0.7;
+  std::vector<TetMesh> meshes;
+  for (const unsigned threads : {1u, 3u}) {
+    const ThreadLimit limit(threads);
+    meshes.push_back(checked_mesh(input_of(image, choice), 0.8).mesh);
+  }
+  EXPECT_EQ(meshes[0].points, meshes[1].points);
+  EXPECT_EQ(meshes[0].tets, meshes[1].tets);
+  EXPECT_EQ(meshes[0].materials, meshes[1].materials);
+}
+
+TEST(ImageMesher, SlicesAndTurnedMirroredGrids) {
+  // The volume of a ball whose grid is mirrored and has voxels that are no cubes.
+  ImageVolume image = image_of({24, 20, 16}, {[](const Vec3& p) {
+                                 const Vec3 at(p[0], 1.2 * p[1], 1.5 * p[2]);
+                                 return 8 - (at - Vec3(11.6, 11.5, 11.2)).norm();
+                               }});
+  image.directions =
+      Eigen::AngleAxisd(0.5, Vec3(1, 2, 3).normalized()).toRotationMatrix() * Vec3(1, 1.2, -1.5).asDiagonal();
+  const LabelInput input = input_of(image, above(0));
+  const double ball = 4.0 / 3 * std::numbers::pi * 8 * 8 * 8;
+  ASSERT_TRUE(input.materials[0].image_volume.has_value());
+  EXPECT_NEAR(*input.materials[0].image_volume * 1.2 * 1.5, ball, 0.015 * ball);
+  EXPECT_NEAR(volume_of(checked_mesh(input, 0.8).mesh, 1), ball, 0.025 * ball);
+  const ImageVolume slice =
+      image_of({20, 20, 1}, {[](const Vec3& p) { return 6 - std::hypot(p[0] - 9.5, p[1] - 9.5); }});
+  EXPECT_NEAR(volume_of(checked_mesh(input_of(slice, above(0)), 0.5).mesh, 1), std::numbers::pi * 36, 3);
 }
 
 TEST(ImageMesher, OtsuDividesTwoClasses) {
