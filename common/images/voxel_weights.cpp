@@ -226,8 +226,9 @@ void VoxelWeights::add_column(const std::array<Polygon, 4>& faces, int y, int z)
       high = std::max(high, face.points[i].x());
     }
   if (low > high) return;
-  column_begin_ = cells_[0].at(low);
-  column_end_ = cells_[0].at(high) + 1;
+  // Cut points may be rounded across a plane that the tet only touches.
+  column_begin_ = std::clamp(cells_[0].at(low), x_.begin + 1, x_.end - 1);
+  column_end_ = std::clamp(cells_[0].at(high) + 1, column_begin_ + 1, x_.end);
   const auto count = static_cast<std::size_t>(column_end_ - column_begin_) + 1;
   of_nodes_.assign(count, Edges{});
   of_pieces_.assign(count, Edges{});
@@ -237,11 +238,14 @@ void VoxelWeights::add_column(const std::array<Polygon, 4>& faces, int y, int z)
     drop_outside(rest, 0);
     double begin = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < rest.count; ++i) begin = std::min(begin, rest.points[i].x());
-    for (int x = rest.count > 0 ? cells_[0].at(begin) : column_end_; x < column_end_ && rest.count > 0; ++x) {
+    const int first = rest.count > 0 ? std::max(cells_[0].at(begin), column_begin_) : column_end_;
+    for (int x = first; x < column_end_ && rest.count > 0; ++x) {
       take_cell(rest, 0, x, piece);
       if (piece.count > 0) add_piece(piece, x, y, z);
     }
-    if (rest.count > 0) add_piece(rest, column_end_, y, z);  // beyond the image
+    if (rest.count == 0) continue;
+    const bool beyond = column_end_ > cells_[0].last();  // of the image; else by rounding
+    add_piece(rest, beyond ? column_end_ : column_end_ - 1, y, z);
   }
   finish_column(y);
 }
@@ -259,7 +263,9 @@ void VoxelWeights::add_layer(std::array<Polygon, 4>& faces, int z) {
     }
   }
   if (low > high) return;
-  for (int y = cells_[1].at(low), end = cells_[1].at(high) + 1; y < end; ++y) {
+  const int first = std::clamp(cells_[1].at(low), y_.begin + 1, y_.end - 1),
+            end = std::min(cells_[1].at(high) + 1, y_.end);
+  for (int y = first; y < end; ++y) {
     for (std::size_t f = 0; f < faces.size(); ++f) take_cell(layer[f], 1, y, column[f]);
     add_column(column, y, z);
   }

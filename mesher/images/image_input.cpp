@@ -49,6 +49,23 @@ void check_names(const std::vector<std::string>& names) {
                      std::to_string(InputTuning::Limits::max_materials) + " are possible");
 }
 
+/// Readers of files check this, too; an image may come from memory.
+void check_values(const ImageVolume& image, const std::string& file) {
+  if (image.channels.empty()) throw InputError(file, 0, "the image has no channel; give it one");
+  for (const std::vector<float>& channel : image.channels) {
+    if (channel.size() != image.voxels() || channel.empty())
+      throw InputError(file, 0,
+                       "a channel has " + std::to_string(channel.size()) + " values for " +
+                           std::to_string(image.voxels()) + " voxels; give one for each");
+    const auto bad = std::find_if(channel.begin(), channel.end(), [](float v) { return !std::isfinite(v); });
+    if (bad != channel.end())
+      throw InputError(file, 0,
+                       "voxel number " + std::to_string(bad - channel.begin()) + " has the value " +
+                           text_of(static_cast<double>(*bad)) +
+                           "; give each voxel a finite one, such as the background's");
+  }
+}
+
 /// Chooses automatic thresholds, and checks that all divide the image.
 std::vector<UsedIso> thresholds_of(const std::vector<float>& values, const std::string& file,
                                    const ImageChoice& choice) {
@@ -156,7 +173,7 @@ Divided divide_by_channels(ImageVolume& image, const std::string& file, const Im
 LabelInput make_image_input(ImageVolume image, const std::string& file, const ImageChoice& choice,
                             std::vector<UsedIso>* used, Progress* progress) {
   const std::size_t channels = image.channels.size();
-  TETWRIGHT_CHECK(channels > 0);
+  check_values(image, file);
   if (!(choice.smoothing >= 0 && choice.smoothing <= ImageTuning::max_smoothing))
     throw UsageError("--smooth " + text_of(choice.smoothing) + " is not between 0 and " +
                      text_of(ImageTuning::max_smoothing) + " voxels");

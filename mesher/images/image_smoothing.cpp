@@ -5,7 +5,6 @@
 #include <cmath>
 #include <utility>
 
-#include "common/portable_math.h"
 #include "mesher/tuning/image_tuning.h"
 #include "tetwright/resources.h"
 
@@ -20,6 +19,9 @@ std::vector<double> gaussian_kernel(double deviation) {
   // exp(-x) by squaring a short series, since libm's differs between machines.
   for (int d = 0; d <= reach; ++d) {
     const double x = 0.5 * d * d / (deviation * deviation);
+    // Beyond that the weight is below the rounding of the sum, and the series would not converge.
+    constexpr double negligible = 40;
+    if (x > negligible) break;
     constexpr int squarings = 10;
     const double small = std::ldexp(-x, -squarings);
     double e = 1 + small * (1 + small / 2 * (1 + small / 3 * (1 + small / 4)));
@@ -99,8 +101,9 @@ void keep_volumes(MaterialImage& image, const std::vector<BandSize>& sizes, cons
       lacks.resize(n);
       parallel_for(0, n, ImageGrains::voxels, [&](std::size_t begin, std::size_t end) {
         std::vector<double> local(image.bands());
+        const std::vector<std::uint8_t> none_lost(image.bands(), 0);
         for (std::size_t i = begin; i < end; ++i) {
-          image.potentials(i, local);
+          image.potentials(i, none_lost, local);
           double others = HUGE_VAL;
           for (std::size_t b = 0; b < local.size(); ++b)
             if (b != c + 1) others = std::min(others, local[b]);

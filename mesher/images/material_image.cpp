@@ -44,13 +44,16 @@ double MaterialImage::outside_value(std::size_t voxel) const {
   return 1 - sum;
 }
 
-void MaterialImage::potentials(std::size_t voxel, std::span<double> out) const {
+void MaterialImage::potentials(std::size_t voxel, std::span<const std::uint8_t> lost,
+                               std::span<double> out) const {
   if (nested_) {
     const double value = channel(0, voxel);
     double potential = 0;
     out[0] = 0;
-    for (std::size_t k = 0; k < thresholds_.size(); ++k)
-      out[k + 1] = potential += 2 * (thresholds_[k] - value);
+    for (std::size_t k = 0; k < thresholds_.size(); ++k) {
+      if (!lost[k + 1]) potential += 2 * (thresholds_[k] - value);
+      out[k + 1] = potential;
+    }
     return;
   }
   for (std::size_t b = 0; b < bands(); ++b) out[b] = -band_value(b, voxel);
@@ -82,7 +85,8 @@ std::size_t MaterialImage::band_between(const std::array<std::size_t, 8>& corner
     const auto above = std::upper_bound(thresholds_.begin(), thresholds_.end(), values[0]);
     return static_cast<std::size_t>(above - thresholds_.begin());
   }
-  return static_cast<std::size_t>(std::max_element(values.begin(), values.end()) - values.begin());
+  // Ties go to the last one, as in band().
+  return static_cast<std::size_t>(values.rend() - std::max_element(values.rbegin(), values.rend()) - 1);
 }
 
 double MaterialImage::contrast(std::size_t voxel, std::size_t a, std::size_t b) const {

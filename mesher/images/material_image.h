@@ -53,7 +53,9 @@ class MaterialImage {
   /// The potential of each band at a voxel. Half the difference of two bands' potentials has the slope of the
   /// image (nested), or half the slope of the difference of two channels.
   /// \param out bands() values
-  void potentials(std::size_t voxel, std::span<double> out) const;
+  /// \param lost by band: 1 if no voxel has it; of nested bands, the band below has its values, too, and its
+  ///   potential is that of the band below
+  void potentials(std::size_t voxel, std::span<const std::uint8_t> lost, std::span<double> out) const;
   /// The band of the smallest potential; ties go to the last one, so that a value equal to a threshold is
   /// inside.
   std::size_t band(std::size_t voxel) const;

@@ -25,27 +25,27 @@ std::string grid_text(const LabelGrid& grid) {
 }  // namespace
 
 void CommonGrid::add(LabelGrid& grid, const std::string& file) {
-  if (first_file_.empty()) {
+  if (!grid_) {
     first_file_ = file;
     grid_ = grid;
     return;
   }
   const std::string before = grid.space;
-  if (change_space(grid, grid_.space))
+  if (change_space(grid, grid_->space))
     ++converted_[before];
-  else if (before != grid_.space)
+  else if (before != grid_->space)
     ++unknown_[before.empty() ? "unknown" : before];
-  bool same = grid.size == grid_.size;
-  const double allowed = InputTuning::Masks::same_grid * grid_.directions.colwise().norm().minCoeff();
+  bool same = grid.size == grid_->size;
+  const double allowed = InputTuning::Masks::same_grid * grid_->directions.colwise().norm().minCoeff();
   for (int corner = 0; corner < 8 && same; ++corner) {
     Vec3 index;
     for (int a = 0; a < 3; ++a) index[a] = (corner >> a & 1) ? grid.size[a] - 1 : 0;
-    same = (grid.to_input(index) - grid_.to_input(index)).norm() <= allowed;
+    same = (grid.to_input(index) - grid_->to_input(index)).norm() <= allowed;
   }
   if (!same)
     throw InputError(file, 0,
                      "its grid, " + grid_text(grid) + ", is not that of " + first_file_ + ", " +
-                         grid_text(grid_) + "; resample one of them to the grid of the other");
+                         grid_text(*grid_) + "; resample one of them to the grid of the other");
 }
 
 std::vector<Diagnostic> CommonGrid::findings() const {
@@ -60,10 +60,10 @@ std::vector<Diagnostic> CommonGrid::findings() const {
            .count = count,
            .done = done});
   };
-  add(DiagnosticCode::space_converted, converted_, "brought into that of the first one, " + grid_.space);
+  add(DiagnosticCode::space_converted, converted_, "brought into that of the first one, " + grid_->space);
   add(DiagnosticCode::space_unknown, unknown_,
       "taken as they are, since it cannot be compared with that of the first one, " +
-          (grid_.space.empty() ? std::string("unknown") : grid_.space));
+          (grid_->space.empty() ? std::string("unknown") : grid_->space));
   return findings;
 }
 

@@ -77,14 +77,15 @@ Runs::Runs(const RegionGrid& regions, const Progress* progress) {
 class Islands {
  public:
   /// \pre there are not too many runs
-  Islands(Runs runs, const VoxelIndex& size, const Progress* progress)
+  /// \param touching whether islands touch in edges and corners, too
+  Islands(Runs runs, const VoxelIndex& size, bool touching, const Progress* progress)
       : runs_(std::move(runs)),
         width_(static_cast<Index>(size[0])),
         rows_(static_cast<std::size_t>(size[1])),
         slices_(static_cast<std::size_t>(size[2])),
         progress_(progress),
         sets_(runs_.count) {
-    unite_neighbours();
+    unite_neighbours(touching);
   }
 
   /// Counts islands and their voxels: by faces, or after unite_touching().
@@ -100,9 +101,9 @@ class Islands {
   void unite_touching();
 
  private:
-  void unite_neighbours();
+  void unite_neighbours(bool touching);
   void unite_rows(std::size_t row, std::size_t other, bool touching);
-  void unite_slices(std::size_t z);
+  void unite_slices(std::size_t z, bool touching);
   bool at_border(std::size_t row, Index run) const;
   void enlarge_outside(Index min_voxels);
   void list_small(Index min_voxels);
@@ -203,11 +204,16 @@ void Islands::unite_rows(std::size_t row, std::size_t other, bool touching) {
 }
 
 /// Unites the runs of a slice with those of the slice before it.
-void Islands::unite_slices(std::size_t z) {
-  for (std::size_t row = z * rows_; row < (z + 1) * rows_; ++row) unite_rows(row, row - rows_, false);
+void Islands::unite_slices(std::size_t z, bool touching) {
+  for (std::size_t y = 0; y < rows_; ++y) {
+    const std::size_t row = z * rows_ + y;
+    unite_rows(row, row - rows_, touching);
+    if (touching && y > 0) unite_rows(row, row - rows_ - 1, true);
+    if (touching && y + 1 < rows_) unite_rows(row, row - rows_ + 1, true);
+  }
 }
 
-void Islands::unite_neighbours() {
+void Islands::unite_neighbours(bool touching) {
   const std::size_t slabs = std::min<std::size_t>(slices_, 4 * thread_count());
   const auto slab_begin = [&](std::size_t slab) { return slab * slices_ / slabs; };
   // The smaller root wins, so slabs are independent until they are joined.
@@ -215,11 +221,12 @@ void Islands::unite_neighbours() {
     for (std::size_t slab = first; slab < last; ++slab)
       for (std::size_t z = slab_begin(slab); z < slab_begin(slab + 1); ++z) {
         throw_if_stopped();
-        for (std::size_t row = z * rows_ + 1; row < (z + 1) * rows_; ++row) unite_rows(row, row - 1, false);
-        if (z > slab_begin(slab)) unite_slices(z);
+        for (std::size_t row = z * rows_ + 1; row < (z + 1) * rows_; ++row)
+          unite_rows(row, row - 1, touching);
+        if (z > slab_begin(slab)) unite_slices(z, touching);
       }
   });
-  for (std::size_t slab = 1; slab < slabs; ++slab) unite_slices(slab_begin(slab));
+  for (std::size_t slab = 1; slab < slabs; ++slab) unite_slices(slab_begin(slab), touching);
 }
 
 void Islands::count_voxels() {
@@ -388,14 +395,8 @@ std::vector<std::size_t> Islands::parts(std::size_t regions, std::vector<std::ui
 void Islands::unite_touching() {
   for (std::size_t z = 0; z < slices_; ++z) {
     throw_if_stopped();
-    for (std::size_t y = 0; y < rows_; ++y) {
-      const std::size_t row = z * rows_ + y;
-      if (y > 0) unite_rows(row, row - 1, true);
-      if (z == 0) continue;
-      unite_rows(row, row - rows_, true);
-      if (y > 0) unite_rows(row, row - rows_ - 1, true);
-      if (y + 1 < rows_) unite_rows(row, row - rows_ + 1, true);
-    }
+    for (std::size_t row = z * rows_ + 1; row < (z + 1) * rows_; ++row) unite_rows(row, row - 1, true);
+    if (z > 0) unite_slices(z, true);
   }
 }
 
@@ -405,7 +406,7 @@ std::vector<RegionParts> count_parts(const RegionGrid& regions, std::size_t coun
   TETWRIGHT_CHECK(regions.voxels() > 0);
   Runs runs(regions, progress);
   if (runs.of_rows.empty()) return {};
-  Islands islands(std::move(runs), regions.size(), progress);
+  Islands islands(std::move(runs), regions.size(), false, progress);
   islands.count_voxels();
   std::vector<std::uint64_t> smallest(count, no_voxel);
   const std::vector<std::size_t> by_faces = islands.parts(count, &smallest);
@@ -422,8 +423,7 @@ IslandMerging merge_small_islands(RegionGrid& regions, std::size_t min_voxels, c
   Runs runs(regions, progress);
   result.runs = runs.count;
   if (runs.of_rows.empty()) return result;
-  Islands islands(std::move(runs), regions.size(), progress);
-  islands.unite_touching();
+  Islands islands(std::move(runs), regions.size(), true, progress);
   islands.count_voxels();
   const auto min = static_cast<Index>(std::min<std::size_t>(min_voxels, many_voxels));
   result.islands = islands.islands();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesher/input/label_preparation.h"
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -59,8 +60,7 @@ class Preparation {
 };
 
 void Preparation::merge(const Progress* progress) {
-  for (const VoxelContact& c : voxel_contacts(result_.regions, progress))
-    result_.contacts.push_back({label_of(c.first), label_of(c.second), c.faces, place(c.voxel)});
+  const std::vector<VoxelContact> as_read = voxel_contacts(result_.regions, progress);
   const IslandMerging merging = merge_small_islands(result_.regions, min_voxels_, progress);
   if (merging.runs >= no_index)
     throw InputError(result_.file, 0,
@@ -90,6 +90,16 @@ void Preparation::merge(const Progress* progress) {
     if (m.to != outside_region) result_.materials[m.to - 1u].voxels += m.voxels;
     ++result_.merged_islands;
     result_.merged_voxels += m.voxels;
+  }
+  std::map<std::pair<RegionIndex, RegionIndex>, VoxelContact> merged;
+  if (!merging.merged.empty())
+    for (const VoxelContact& c : voxel_contacts(result_.regions, progress)) merged[{c.first, c.second}] = c;
+  for (const VoxelContact& c : as_read) {
+    const auto after = merged.find({c.first, c.second});
+    const VoxelContact& kept = after != merged.end() ? after->second : c;
+    const bool lost = !merging.merged.empty() && after == merged.end();
+    result_.contacts.push_back(
+        {label_of(c.first), label_of(c.second), lost ? 0 : kept.faces, place(kept.voxel)});
   }
   for (const JoinedIslands& j : merging.joined) result_.fused.push_back({label_of(j.region), place(j.voxel)});
   report(losses);

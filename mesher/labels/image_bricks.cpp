@@ -70,14 +70,17 @@ class InterfaceSlopes {
     Sum all;
     for (const Sum& s : own) all += s;
     const double mean = all.edges > 0 ? all.slopes / all.edges : 1;
-    slopes_.resize(blocks);
+    slopes_.assign(blocks, 0);
     parallel_for(0, blocks, ImageGrains::voxels, [&](std::size_t begin, std::size_t end) {
       for (std::size_t b = begin; b < end; ++b) {
         const Sum around = sum_around(position(b), own);
-        slopes_[b] = std::max(around.edges > 0 ? around.slopes / around.edges : mean,
-                              ImageTuning::min_local_slope * mean);
+        if (around.edges > 0)
+          slopes_[b] = std::max(around.slopes / around.edges, ImageTuning::min_local_slope * mean);
       }
     });
+    limit_changes();
+    for (double& slope : slopes_)
+      if (slope == 0) slope = mean;
   }
 
   /// \param node index of a node of the whole volume
@@ -124,6 +127,28 @@ class InterfaceSlopes {
   std::array<int, 3> position(std::size_t number) const {
     const auto x = static_cast<std::size_t>(counts_[0]), y = static_cast<std::size_t>(counts_[1]);
     return {static_cast<int>(number % x), static_cast<int>(number / x % y), static_cast<int>(number / x / y)};
+  }
+
+  /// Raises slopes beside much larger ones: a change from one voxel to the next moves interfaces. Blocks far
+  /// from interfaces have none.
+  void limit_changes() {
+    for (bool changed = true; changed;) {
+      changed = false;
+      std::vector<double> raised = slopes_;
+      for (std::size_t b = 0; b < slopes_.size(); ++b) {
+        if (slopes_[b] == 0) continue;
+        const std::array<int, 3> at = position(b);
+        for (std::size_t a = 0; a < 3; ++a)
+          for (const int step : {-1, 1}) {
+            std::array<int, 3> there = at;
+            there[a] += step;
+            if (there[a] < 0 || there[a] >= counts_[a]) continue;
+            raised[b] = std::max(raised[b], slopes_[block(there)] / ImageTuning::max_slope_ratio);
+          }
+        changed |= raised[b] > slopes_[b];
+      }
+      slopes_ = std::move(raised);
+    }
   }
 
   /// Length of the gradient, by central differences, index space.
@@ -211,8 +236,12 @@ class BrickMaker {
         slopes_(slopes),
         steps_(depth_steps()),
         box_(box_side * box_side * box_side),
+        lost_(image.bands(), 0),
+        near_(image.bands(), 0),
         potentials_(image.bands()),
-        values_(image.bands()) {}
+        values_(image.bands()) {
+    for (std::size_t b = 0; b < lost_.size(); ++b) lost_[b] = labels.band_regions[b] == on_interface;
+  }
 
   void add(const std::array<int, 3>& brick, RowBricks& out) {
     read_regions(brick);
@@ -221,6 +250,9 @@ class BrickMaker {
       out.bricks.push_back(made);
       return;
     }
+    near_.assign(image_.bands(), 0);
+    for (std::size_t b = 0; b < image_.bands(); ++b)
+      if (labels_.band_regions[b] != on_interface) near_[b] = region_near(labels_.band_regions[b]);
     int i = 0;
     for (int z = 0; z < nodes; ++z)
       for (int y = 0; y < nodes; ++y)
@@ -230,7 +262,7 @@ class BrickMaker {
       const RegionIndex region = labels_.band_regions[b];
       if (region == on_interface) continue;
       const auto [smallest, largest] = std::minmax_element(values_[b].begin(), values_[b].end());
-      if (*smallest >= band_units) continue;
+      if (*smallest >= band_units || !occurs(b)) continue;
       if (*largest <= -band_units) made.alone = region;
       all_far &= *largest <= -band_units;
       out.channels.push_back(region);
@@ -275,6 +307,29 @@ class BrickMaker {
               read[static_cast<std::size_t>(((z - low[2]) * height + (y - low[1])) * width + (x - low[0]))];
   }
 
+  bool region_near(RegionIndex region) const {
+    return std::find(box_.begin(), box_.end(), region) != box_.end();
+  }
+
+  /// Whether a band has a voxel near the brick, or may be the nearest between voxels, because in some cube no
+  /// band near the brick is nearer at all corners. Sharp probability maps are nowhere far apart otherwise.
+  bool occurs(std::size_t band) const {
+    if (near_[band]) return true;
+    constexpr int y = nodes, z = nodes * nodes;
+    constexpr std::array<int, 8> corners{0, 1, y, y + 1, z, z + 1, z + y, z + y + 1};
+    for (int k = 0; k < cells * cells * cells; ++k) {
+      const int lowest = (k / (cells * cells) * nodes + k / cells % cells) * nodes + k % cells;
+      bool beaten = false;
+      for (std::size_t b = 0; b < near_.size() && !beaten; ++b)
+        beaten = near_[b] && std::all_of(corners.begin(), corners.end(), [&](int c) {
+                   const auto corner = static_cast<std::size_t>(lowest + c);
+                   return values_[b][corner] <= values_[band][corner];
+                 });
+      if (!beaten) return true;
+    }
+    return false;
+  }
+
   void set_node(const std::array<int, 3>& brick, const std::array<int, 3>& in_brick, int i) {
     const int here =
         box_index(in_brick[0] + depth_reach, in_brick[1] + depth_reach, in_brick[2] + depth_reach);
@@ -294,7 +349,7 @@ class BrickMaker {
       node[a] = brick[a] * cells + in_brick[a];
       at[a] = voxel_along(static_cast<int>(a), node[a]);
     }
-    image_.potentials(image_.voxel(at[0], at[1], at[2]), potentials_);
+    image_.potentials(image_.voxel(at[0], at[1], at[2]), lost_, potentials_);
     const std::vector<RegionIndex>& regions = labels_.band_regions;
     const std::size_t band =
         static_cast<std::size_t>(std::find(regions.begin(), regions.end(), own) - regions.begin());
@@ -333,6 +388,8 @@ class BrickMaker {
   const InterfaceSlopes& slopes_;
   const std::vector<DepthStep> steps_;
   std::vector<RegionIndex> box_;
+  std::vector<std::uint8_t> lost_;  ///< by band: 1 if no voxel has it
+  std::vector<std::uint8_t> near_;  ///< by band: 1 if a voxel near the brick has it
   std::vector<double> potentials_;  ///< of each band at a node
   std::vector<std::array<std::int16_t, LabelBricks::volume>> values_;
 };

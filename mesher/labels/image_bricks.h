@@ -13,7 +13,8 @@ namespace tetwright {
 /// (MaterialImage) divided by the mean slope of interfaces nearby, which varies slowly. So it is zero where
 /// the trilinear image has the interface, up to the small change of that slope within a voxel, and its own
 /// slope is about 1 there. Away from interfaces, where the values of an image say little about the distance,
-/// it is at least the distance from voxels of other regions.
+/// it is at least the distance from voxels of other regions. Distances of more than 17 voxels, where the
+/// contrast of an edge is many times the mean nearby, are clamped.
 ///
 /// Where LabelInput::regions differs from the image, since islands were merged, it prevails at voxel centres.
 /// Parallel; the result does not depend on the number of threads.

@@ -6,8 +6,8 @@
 
 #include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
-#include "mesher/labels/image_bricks.h"
 #include "mesher/labels/distance_transform.h"
+#include "mesher/labels/image_bricks.h"
 #include "mesher/labels/label_bricks.h"
 #include "mesher/tuning/image_tuning.h"
 #include "mesher/tuning/label_tuning.h"
@@ -134,6 +134,7 @@ class LabelField::Sampler final : public FieldSampler {
         units_per_voxel_(bricks_.units_per_voxel),
         band_units_(bricks_.band_units()),
         per_unit_(f.shared_->voxel / f.frame().cell_size / units_per_voxel_),
+        max_mixed_margin_(static_cast<float>(per_unit_ * units_per_voxel_ * ImageTuning::max_mixed_margin)),
         cells_per_voxel_(std::ldexp(1, f.refinement())) {}
 
   NearestRegion nearest(const Vec3& point) override {
@@ -227,7 +228,9 @@ class LabelField::Sampler final : public FieldSampler {
     return std::nullopt;
   }
   double far_value(const Place& p, RegionIndex region) const {
-    return p.brick->count == 0 && p.brick->alone == region ? -band_units_ : band_units_;
+    if (p.brick->count == 0 && p.brick->alone == region) return -band_units_;
+    // No less than any distance in the brick.
+    return shared_.of_image && p.brick->count > 0 ? INT16_MAX : band_units_;
   }
   double value(const Place& p, RegionIndex region) const {
     const auto channel = channel_of(p, region);
@@ -255,6 +258,15 @@ class LabelField::Sampler final : public FieldSampler {
     return Far{first.region, depth, per_voxel * by_voxels.cwiseProduct(field_.nodes_per_unit_)};
   }
 
+  /// Whether the region of a channel is not the nearest at all corners of a cell between nodes.
+  bool is_mixed(const Place& p, std::uint32_t channel) const {
+    const std::int16_t* v = bricks_.channel(channel) + p.node;
+    for (const int corner :
+         {0, 1, step_y, step_y + 1, step_z, step_z + 1, step_z + step_y, step_z + step_y + 1})
+      if (v[corner] > 0) return true;
+    return false;
+  }
+
   /// The regions of the smallest and the second smallest distance.
   std::pair<NearestRegion, RegionIndex> nearest(const Place& p) const {
     const LabelBricks::Brick& b = *p.brick;
@@ -262,16 +274,20 @@ class LabelField::Sampler final : public FieldSampler {
     if (b.count == 0) return {{b.alone, band}, b.alone};
     double smallest = HUGE_VAL, next = HUGE_VAL;
     RegionIndex first = 0, second = 0;
+    std::uint32_t nearest = b.first;
     for (std::uint32_t c = b.first; c < b.first + b.count; ++c) {
       const double v = channel_value(p, c);
       if (v < smallest) {
         next = smallest, second = first;
-        smallest = v, first = bricks_.channels[c];
+        smallest = v, first = bricks_.channels[c], nearest = c;
       } else if (v < next) {
         next = v, second = bricks_.channels[c];
       }
     }
-    return {{first, std::min(static_cast<float>(0.5 * per_unit_ * (next - smallest)), band)}, second};
+    float margin = std::min(static_cast<float>(0.5 * per_unit_ * (next - smallest)), band);
+    // Contrast above the mean nearby does not make an interface more distant.
+    if (shared_.of_image && is_mixed(p, nearest)) margin = std::min(margin, max_mixed_margin_);
+    return {{first, margin}, second};
   }
 
   void values_and_gradients(const Vec3& point, std::span<const RegionIndex> regions, double* values,
@@ -299,6 +315,7 @@ class LabelField::Sampler final : public FieldSampler {
   const float units_per_voxel_;
   const std::int16_t band_units_;
   const double per_unit_;         ///< lattice units
+  const float max_mixed_margin_;  ///< lattice units
   const double cells_per_voxel_;  ///< lattice units per voxel of the frame
 };
 

@@ -20,10 +20,16 @@ struct ImageTuning {
   static constexpr double merged_depth = 0.125;
   /// Slope of distances at an interface, as a share of the mean one nearby, from which Newton's method is
   /// trusted: contrast varies that much along blurred edges.
-  static constexpr double min_slope = 0.1;
+  static constexpr double min_slope = 0.02;
   /// Slopes are averaged around an interface in blocks of a brick; smaller ones than this share of the mean
   /// of the volume are raised to it, so that noise around a threshold does not become steep.
   static constexpr double min_local_slope = 0.05;
+  /// Largest ratio of slopes of adjacent blocks: they change by at most an eighth from one voxel to the next,
+  /// which moves an interface by at most 0.03 voxels.
+  static constexpr double max_slope_ratio = 2;
+  /// Largest margin of points in a cube of eight voxels that an interface crosses, voxels: half of its
+  /// diagonal, and a little.
+  static constexpr double max_mixed_margin = 0.9;
   /// Bins of the histogram for Otsu's threshold: finer than 12-bit detectors need in a part of their range,
   /// coarser than floating-point noise.
   static constexpr std::size_t histogram_bins = 4096;

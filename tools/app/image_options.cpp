@@ -41,7 +41,7 @@ void add_images(CLI::App& app, CommandLine& c) {
   add_parsed<std::optional<double>>(
       app, "--outside-probability", c.options.images.outside_probability, "P",
       [](const std::string& text) { return parse_number("--outside-probability", text, any_number); },
-      "The inputs are probability maps, one for each material; points where none exceeds P are outside "
+      "The inputs are probability maps, one for each material; points where all are below P are outside "
       "(default: what they lack to 1)");
   add_parsed<std::optional<double>>(
       app, "--smooth", c.options.images.smoothing, "VOXELS",

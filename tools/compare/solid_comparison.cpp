@@ -139,9 +139,7 @@ SolidComparison compare(const LabelMaterial& label, double voxel_volume, const S
   f.name = label.name;
   f.tag = label.tag;
   f.against = SolidComparison::Against::voxels;
-  auto voxels = static_cast<double>(label.voxels);
-  // Voxels that merging took off or added count whole.
-  if (label.image_volume) voxels += *label.image_volume - static_cast<double>(label.voxels_in_file);
+  const double voxels = expected_volume(label);
   f.expected = {.volume = voxel_volume * voxels, .components = label.parts.touching};
   f.max_components = label.parts.by_faces;
   const std::vector<SolidShell> shells = shells_of(result, 0);
@@ -161,6 +159,13 @@ SolidComparison compare(const LabelMaterial& label, double voxel_volume, const S
 }
 
 }  // namespace
+
+double expected_volume(const LabelMaterial& label) {
+  const auto voxels = static_cast<double>(label.voxels);
+  // Voxels that merging took off or added count whole.
+  return label.image_volume ? *label.image_volume + voxels - static_cast<double>(label.voxels_in_file)
+                            : voxels;
+}
 
 bool is_same_volume(double volume, double meant) {
   return std::fabs(volume - meant) <= same_volume * std::fabs(meant);

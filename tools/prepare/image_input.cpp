@@ -83,13 +83,16 @@ bool are_images(std::vector<Input>& volumes, PrepareRun& run) {
   return has_fractions(take_image(first, run.seconds_waited));
 }
 
-bool has_channels(const std::vector<Input>& volumes) {
-  const Input& first = volumes.front();
-  if (volumes.size() > 1 || !std::holds_alternative<InputFile>(first.value)) return false;
+bool are_images_after_all(const std::vector<Input>& volumes, const LabelOptions& labels) {
+  if (!labels.meshed.empty() || !labels.names_file.empty() || labels.outside) return false;
   try {
-    return read_image(first.name, first.volume_file).channels.size() > 1;
-  } catch (const InputError&) {
-    return false;
+    return std::any_of(volumes.begin(), volumes.end(), [&](const Input& input) {
+      if (!std::holds_alternative<InputFile>(input.value)) return false;
+      const ImageVolume image = read_image(input.name, input.volume_file);
+      return (image.channels.size() > 1 || volumes.size() > 1) && has_fractions(image);
+    });
+  } catch (const Error&) {
+    return false;  // the error of the labels says more
   }
 }
 
@@ -99,6 +102,10 @@ LabelInput read_images(std::vector<Input>& volumes, PrepareRun& run) {
     throw UsageError(
         "--labels, --label-names and --outside-label are for segmented volumes, and the input is "
         "an image");
+  if (run.options.values.own_label)
+    throw UsageError(
+        "--values-mask labels is for segmented volumes, and the input is an image; give a volume, "
+        "--values-mask FILE");
   if (run.options.bodies.overlap != OverlapRule::later)
     throw UsageError("--on-overlap is for surfaces and masks, and the input is an image");
   ImageChoice choice = choice_of(run.options);

@@ -14,8 +14,9 @@ namespace tetwright {
 /// \throws InputError in the cases of read_image()
 bool are_images(std::vector<Input>& volumes, PrepareRun& run);
 
-/// Whether the only volume, which is a file, is an image with several channels. Reads all of it.
-bool has_channels(const std::vector<Input>& volumes);
+/// Whether volumes that cannot be read as labels or masks are images: several, or one of several channels, with
+/// values that are not whole numbers. Reads them again.
+bool are_images_after_all(const std::vector<Input>& volumes, const LabelOptions& labels);
 
 /// Reads images and divides them into materials. Adds thresholds and notes to the report.
 /// \pre are_images()

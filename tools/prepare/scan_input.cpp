@@ -170,8 +170,8 @@ LabelInput read_volume(std::optional<LabelVolume> vdb_labels, std::vector<Input>
   try {
     return read_labels({}, inputs, run);
   } catch (const InputError&) {
-    // Readers of labels refuse channels.
-    if (!has_channels(inputs)) throw;
+    // Readers of labels refuse channels and fractions.
+    if (!are_images_after_all(inputs, run.options.labels)) throw;
     return read_images(inputs, run);
   }
 }

@@ -131,14 +131,32 @@ void check_value_options(Task task, const ValueOptions& options) {
     throw UsageError("--modulus gives each bin an elastic modulus; give --bins NAME=N");
 }
 
+/// Notes a spacing that the file does not give.
+void report_spacing(const LabelGrid& grid, const std::string& file, PrepareReport& report) {
+  if (grid.spacing_assumed)
+    report.diagnostics.push_back({.code = DiagnosticCode::spacing_assumed,
+                                  .file = file,
+                                  .what = "volume whose file gives no spacing",
+                                  .count = 1,
+                                  .done = "each voxel has the size 1"});
+  if (grid.spacing_replaced)
+    report.diagnostics.push_back({.code = DiagnosticCode::spacing_replaced,
+                                  .file = file,
+                                  .what = "volume whose file gives another spacing",
+                                  .count = 1,
+                                  .done = "that of --spacing is used"});
+}
+
 ValueInputs read_value_inputs(PrepareRun& run) {
   const ValueOptions& options = run.options.values;
   ValueInputs inputs;
   if (options.images.empty()) return inputs;
   run.progress.begin_stage("read images");
   for (const ValueImage& image : options.images) {
-    inputs.images.push_back(image.image ? image.image
-                                        : std::make_shared<const ImageVolume>(read_image(image.file)));
+    inputs.images.push_back(
+        image.image ? image.image
+                    : std::make_shared<const ImageVolume>(read_image(image.file, run.options.volume_file)));
+    report_spacing(*inputs.images.back(), image.file, run.report);
     run.progress.throw_if_stopped();
     if (const std::size_t channels = inputs.images.back()->channels.size(); channels != 1)
       throw InputError(image.file, 0,
@@ -147,7 +165,8 @@ ValueInputs read_value_inputs(PrepareRun& run) {
   }
   if (!options.mask_file.empty())
     inputs.mask = options.mask ? options.mask
-                               : std::make_shared<const LabelVolume>(read_label_volume(options.mask_file));
+                               : std::make_shared<const LabelVolume>(
+                                     read_label_volume(options.mask_file, run.options.volume_file));
   return inputs;
 }
 

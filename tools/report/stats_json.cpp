@@ -58,7 +58,7 @@ nlohmann::json volume_json(const VolumeReport& v,
                       {"name", l.name},
                       {"voxels", l.voxels},
                       {"voxels_in_file", l.voxels_in_file},
-                      {"volume", voxel * l.image_volume.value_or(static_cast<double>(l.voxels))}});
+                      {"volume", voxel * expected_volume(l)}});
     if (const auto colour = colours.find(l.tag); colour != colours.end())
       labels.back()["color"] = colour->second;
   }

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,7 +28,7 @@ class CommonGrid {
 
  private:
   std::string first_file_;
-  LabelGrid grid_;  ///< of the first volume
+  std::optional<LabelGrid> grid_;  ///< of the first volume
   /// Spaces of volumes, and how many had each: brought into that of the first one, or taken as they are.
   std::map<std::string, std::size_t> converted_, unknown_;
 };

@@ -371,8 +371,8 @@ struct LabelMaterial {
   std::size_t voxels = 0;          ///< after merging small islands, 1 or more
   std::size_t voxels_in_file = 0;  ///< before merging
   LabelParts parts = {};           ///< after merging
-  /// Volume between the interfaces of an image before merging, voxels; std::nullopt for labels, whose volume is
-  /// that of their voxels.
+  /// Volume between the interfaces of an image before merging, voxels; std::nullopt for labels, whose volume
+  /// is that of their voxels.
   std::optional<double> image_volume = {};
 };
 
@@ -386,11 +386,13 @@ struct LostLabel {
 
 class MaterialImage;
 
-/// Two regions with voxels that touch.
+/// Two regions with voxels that touch as read.
 struct LabelContact {
   MaterialOrOutside first, second;  ///< labels; the outside comes first
-  std::uint64_t faces = 0;          ///< that they share; 0 if they only touch in edges and corners
-  Vec3 place = Vec3::Zero();        ///< centre of a voxel where they touch, input units
+  /// Voxel faces that they share after small islands were merged; 0 if they only touch in edges and corners,
+  /// or only islands did.
+  std::uint64_t faces = 0;
+  Vec3 place = Vec3::Zero();  ///< centre of a voxel where they touch, input units
 };
 
 /// Two large parts of a label, or of the outside, that became one as an island between them was merged.
@@ -418,7 +420,7 @@ struct LabelInput {
   /// Parts of the outside that do not reach the border of the volume. Parts are not counted if there are
   /// more than 2^32 - 2 runs of equal voxels along the first axis.
   LabelParts outside_parts;
-  std::vector<LabelContact> contacts = {};  ///< before islands were merged
+  std::vector<LabelContact> contacts = {};  ///< of the voxels as read
   std::vector<FusedParts> fused = {};       ///< by the merging of islands
   std::vector<Diagnostic> findings;         ///< changes to the input, for the user
 

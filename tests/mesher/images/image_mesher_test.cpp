@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "common/random.h"
+#include "mesher/labels/image_bricks.h"
 #include "tests/mesher/checked_labels.h"
 #include "tests/mesher/label_volumes.h"
 #include "tetwright/error.h"
@@ -301,6 +302,74 @@ TEST(ImageMesher, SlicesAndTurnedMirroredGrids) {
   const ImageVolume slice =
       image_of({20, 20, 1}, {[](const Vec3& p) { return 6 - std::hypot(p[0] - 9.5, p[1] - 9.5); }});
   EXPECT_NEAR(volume_of(checked_mesh(input_of(slice, above(0)), 0.5).mesh, 1), std::numbers::pi * 36, 3);
+}
+
+TEST(ImageMesher, LittleSmoothingChangesLittle) {
+  const ImageVolume image =
+      image_of({16, 16, 16}, {[](const Vec3& p) { return 6 - (p - Vec3(7, 8, 7.5)).norm(); }});
+  const double exact = *input_of(image, above(0)).materials[0].image_volume;
+  for (const double deviation : {0.001, 0.01, 0.05, 0.2}) {
+    ImageChoice choice = above(0);
+    choice.smoothing = deviation;
+    EXPECT_NEAR(*input_of(image, choice).materials[0].image_volume, exact, 0.03 * exact) << deviation;
+  }
+}
+
+TEST(ImageMesher, ALostBandBelongsToTheOneBelow) {
+  // The edge is so sharp that no voxel is in the band between.
+  const ImageVolume image = image_of({20, 20, 20}, {[](const Vec3& p) { return p[0] < 9.5 ? 1000.0 : 0.0; }});
+  ImageChoice choice;
+  choice.isos = {{"flesh", 100.0}, {"bone", 600.0}};
+  const LabelInput input = input_of(image, choice);
+  ASSERT_EQ(input.materials.size(), 1u);
+  EXPECT_EQ(input.materials[0].name, "bone");
+  // The bone ends at 9 + 0.4, where the value is 600.
+  const double volume = 400 * 9.9;
+  EXPECT_NEAR(*input.materials[0].image_volume, volume, 0.03 * volume);
+  EXPECT_NEAR(volume_of(checked_mesh(input, 1.0).mesh, 2), volume, 0.01 * volume);
+}
+
+TEST(ImageMesher, SharpMapsOfManyChannelsTakeLittleMemory) {
+  // Cells of 3^3 seeds, each with a map of 0 and 1.
+  constexpr int seeds = 27;
+  std::vector<Function> maps;
+  for (int s = 0; s < seeds; ++s)
+    maps.emplace_back([s](const Vec3& p) {
+      const auto cell = [](double x) { return std::min(2, static_cast<int>(x / 8)); };
+      return cell(p[0]) + 3 * cell(p[1]) + 9 * cell(p[2]) == s ? 1.0 : 0.0;
+    });
+  ImageChoice choice;
+  for (int s = 0; s < seeds; ++s) choice.names.push_back("m" + std::to_string(s));
+  const LabelInput input = input_of(image_of({24, 24, 24}, maps), choice);
+  const LabelBricks bricks = make_image_bricks(input, nullptr);
+  // At most eight meet near a brick.
+  EXPECT_LE(bricks.channels.size(), 8 * bricks.bricks.size());
+  EXPECT_EQ(checked_mesh(input, 1.0).mesh.material_names.size(), 27u);
+}
+
+TEST(ImageMesher, ContrastOfAnotherMaterialNearbyDoesNotMoveAnInterface) {
+  // Metal of a contrast of 40 times that of the bone, eight voxels away.
+  const ImageVolume image = image_of({30, 16, 16}, {[](const Vec3& p) {
+                                       const double bone = 100 * std::clamp(p[0] - 9.3, -1.0, 1.0);
+                                       const double metal = 4000 * std::clamp(p[0] - 19.3, 0.0, 1.0);
+                                       return bone + metal;
+                                     }});
+  ImageChoice choice;
+  choice.isos = {{"bone", 20.0}, {"metal", 2100.0}};
+  const DenseMesh made = checked_mesh(input_of(image, choice), cells_of(1, 0));
+  const Misses found =
+      misses(made.mesh, [&](const Vec3& p) { return std::min(std::abs(p[0] - 9.5), std::abs(p[0] - 19.714)); });
+  EXPECT_LT(found.rms, 0.04);
+}
+
+TEST(ImageMesher, ValuesThatAreMissingOrNotFiniteAreRefused) {
+  ImageVolume image = image_of({4, 4, 4}, {[](const Vec3& p) { return p[0]; }});
+  image.channels[0][5] = std::nanf("");
+  EXPECT_THROW(input_of(image, above(1)), InputError);
+  image.channels[0].pop_back();
+  EXPECT_THROW(input_of(image, above(1)), InputError);
+  image.channels.clear();
+  EXPECT_THROW(input_of(image, above(1)), InputError);
 }
 
 TEST(ImageMesher, OtsuDividesTwoClasses) {

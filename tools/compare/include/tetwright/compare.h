@@ -57,6 +57,9 @@ struct SolidComparison {
   }
 };
 
+/// The volume that a label should have, voxels.
+double expected_volume(const LabelMaterial& label);
+
 /// Whether a volume is within 1 % of the expected volume `meant`.
 bool is_same_volume(double volume, double meant);
 

@@ -16,9 +16,9 @@
 
 #include "tetwright/compare.h"
 #include "tetwright/diagnostic.h"
+#include "tetwright/image_input.h"
 #include "tetwright/image_volume.h"
 #include "tetwright/io.h"
-#include "tetwright/image_input.h"
 #include "tetwright/label_volume.h"
 #include "tetwright/loop_times.h"
 #include "tetwright/mesh_quality.h"
@@ -350,9 +350,9 @@ struct VolumeReport {
   std::vector<LostLabel> lost;
   LabelParts outside_parts;
   std::size_t merged_islands, merged_voxels;
-  std::vector<LabelContact> contacts;  ///< before islands were merged
+  std::vector<LabelContact> contacts;  ///< of the voxels as read
   std::vector<FusedParts> fused;       ///< by the merging of islands
-  std::vector<UsedIso> isos = {};  ///< of an image
+  std::vector<UsedIso> isos = {};      ///< of an image
 };
 
 /// Edge lengths requested by SizeOptions.
