@@ -337,6 +337,9 @@ bool has_dicom_files(const std::string& folder) {
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
     std::error_code unknown;
     if (is_hidden(entry->path()) || !entry->is_regular_file(unknown)) continue;
+    // Folders with thousands of pages are not opened file by file.
+    const std::string extension = lower_case(entry->path().extension().string());
+    if (extension == ".tif" || extension == ".tiff") continue;
     if (is_dicom_name(entry->path()) || is_dicom_file(entry->path().string())) return true;
   }
   return false;
