@@ -340,8 +340,8 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
      .title = "content of the file left out",
      .message = "FILE: N KIND (dropped)",
      .cause = "The file has something that Tetwright does not keep: lines, points, colours, textures, "
-              "animations, text arrays, midside nodes, partitions, node sets, other sections and so on. The "
-              "note names the kind and number.",
+              "animations, text arrays, midside nodes, partitions, node sets, other sections and so on. Or a "
+              "folder of slices or masks has other files. The note names the kind and number.",
      .remedy = "None needed if you do not miss it. Midside nodes come back with `--order 2`."},
     {.code = input_restored,
      .name = "input-restored",

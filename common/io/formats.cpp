@@ -242,6 +242,8 @@ FileKind file_kind(const std::string& path, FileUse use) {
   return FileKind::unknown;
 }
 
+bool is_dicom(const std::string& path) { return volume_path(path).extension == ".dcm"; }
+
 std::string known_extensions(FileKind kind, FileUse use) {
   std::string out;
   std::string_view last;

@@ -188,6 +188,15 @@ void set_grid(const LabelGrid& grid, const std::string& file, LabelInput& result
                                .what = "volume whose file gives another spacing",
                                .count = 1,
                                .done = "that of --spacing is used"});
+  if (!grid.ignored_files.empty())
+    result.findings.push_back(
+        {.code = DiagnosticCode::input_dropped,
+         .file = file,
+         .what = (grid.ignored_files.size() == 1 ? "file that is no slice, "
+                                                 : "files that are no slices, the first ") +
+                 grid.ignored_files.front(),
+         .count = grid.ignored_files.size(),
+         .done = "not read"});
 }
 
 void prepare_regions(LabelInput& result, std::size_t min_voxels, const std::string& none_outside,

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 
+#include "common/io/volumes/dicom.h"
 #include "common/io/volumes/hdf5_volume.h"
 #include "common/io/volumes/inr.h"
 #include "common/io/volumes/metaimage.h"
@@ -198,6 +199,10 @@ constexpr Target targets[] = {
        run_both([&](VoxelUse use) { return find_raw_volume(file.path(), find_npy, use); });
      }},
     {"zarr", run_zarr},
+    {"dicom",
+     [](Bytes b) {
+       run_file(b, [](const std::string& path, VoxelUse use) { return open_dicom(path, 1 << 12, use); });
+     }},
     {"tiff",
      [](Bytes b) {
        run_file(b, [](const std::string& p, VoxelUse use) { return open_tiff_stack(p, 1 << 12, use); });

@@ -98,7 +98,7 @@ bool labels_differ(const std::vector<std::vector<NamedMask>>& layers) {
 
 /// The files in a folder, in the order of their names.
 struct FolderFiles {
-  std::vector<std::string> volumes;  ///< but for .tif
+  std::vector<std::string> volumes;  ///< but for slices: TIFF and DICOM
   std::vector<std::string> others;   ///< surfaces, tet meshes and .vdb files
 };
 
@@ -118,6 +118,7 @@ FolderFiles files_of(const std::string& folder) {
     if (extension == ".hdr") headers.insert(file_stem(file));
     const FileKind kind = file_kind(file);
     if (extension == ".tif" || extension == ".tiff") continue;
+    if (kind == FileKind::volume && is_dicom(file)) continue;
     if (kind == FileKind::volume)
       files.volumes.push_back(file);
     else if (kind != FileKind::unknown || is_vdb(file))
@@ -163,7 +164,8 @@ std::vector<Input> with_masks_of_folders(std::vector<Input> inputs, PrepareRepor
     if (input.kind() == FileKind::volume) {
       // Slices.
       if (!files.volumes.empty())
-        throw UsageError(input.name + " has slices (.tif) and other volumes, such as " +
+        throw UsageError(input.name + " has slices (" + (is_dicom(input.name) ? "DICOM" : ".tif") +
+                         ") and other volumes, such as " +
                          fs::path(files.volumes.front()).filename().string() +
                          "; keep them in different folders, or give the files");
       all.push_back(std::move(input));

@@ -31,6 +31,8 @@ struct LabelGrid {
   std::map<MaterialTag, std::array<double, 3>> colours = {};
   /// True if the file gives another spacing than set_spacing() did.
   bool spacing_replaced = false;
+  /// Files in the folder of the slices that are no slices, without the folder.
+  std::vector<std::string> ignored_files = {};
 
   /// Position of a voxel index, input units. `index` may be fractional.
   Vec3 to_input(const Vec3& index) const;

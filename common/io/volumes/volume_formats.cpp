@@ -6,6 +6,8 @@
 #include <filesystem>
 
 #include "common/files/file_names.h"
+#include "common/io/volumes/dicom.h"
+#include "common/io/volumes/dicom_elements.h"
 #include "common/io/volumes/hdf5_volume.h"
 #include "common/io/volumes/headerless.h"
 #include "common/io/volumes/inr.h"
@@ -34,11 +36,15 @@ std::unique_ptr<VoxelSource> open_tiff_path(const VolumePath& path, std::size_t 
   return open_tiff_stack(path.file, cache_bytes, use);
 }
 
+std::unique_ptr<VoxelSource> open_dicom_path(const VolumePath& path, std::size_t cache_bytes, VoxelUse use) {
+  return open_dicom(path.file, cache_bytes, use);
+}
+
 std::unique_ptr<VoxelSource> open_hdf5_path(const VolumePath& path, std::size_t cache_bytes, VoxelUse use) {
   return open_hdf5_volume(path.file, path.inside, cache_bytes, use);
 }
 
-constexpr std::array<VolumeFormat, 17> formats_of_volumes{
+constexpr std::array<VolumeFormat, 18> formats_of_volumes{
     {{.extension = ".nrrd",
       .read = open_nrrd,
       .find = find_nrrd,
@@ -63,6 +69,7 @@ constexpr std::array<VolumeFormat, 17> formats_of_volumes{
      {.extension = ".zarr", .open = open_zarr_path},
      {.extension = ".tif", .open = open_tiff_path},
      {.extension = ".tiff", .open = open_tiff_path},
+     {.extension = ".dcm", .open = open_dicom_path},
      {.extension = ".h5", .open = open_hdf5_path},
      {.extension = ".hdf5", .open = open_hdf5_path},
      {.extension = ".npy", .read = open_npy, .find = find_npy},
@@ -102,8 +109,12 @@ VolumePath volume_path(const std::string& path) {
   } else if (std::error_code error; std::filesystem::is_directory(path, error)) {
     if (is_zarr_folder(path))
       out.extension = ".zarr";
+    else if (has_dicom_files(path))
+      out.extension = ".dcm";
     else if (has_tiff_files(path))
       out.extension = ".tif";
+  } else if (is_dicom_file(path)) {
+    out.extension = ".dcm";
   }
   return out;
 }

@@ -26,7 +26,8 @@ struct VolumePath {
 };
 
 /// Splits FILE.h5:/DATASET. Other paths have the format of their extension, or if that is none of a volume,
-/// that of a folder: zarr arrays, also inside FOLDER.zarr, or TIFF files.
+/// that of a folder: zarr arrays, also inside FOLDER.zarr, DICOM or TIFF files; or DICOM by the content of
+/// the file.
 VolumePath volume_path(const std::string& path);
 
 /// A format of volumes: labels or images. It is read as bytes, or opened by name.

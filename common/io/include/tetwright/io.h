@@ -225,7 +225,8 @@ enum class FileKind {
   surface,   ///< .ply .obj .stl .off .vtp; read only: .3mf .glb
   tet_mesh,  ///< see tet_format_table()
   /// .nrrd; read only: .nhdr .mhd .mha .nii .nii.gz .hdr .img .inr .inr.gz, .zarr .tif .tiff .h5 .hdf5, and
-  /// .npy, .raw, folders with zarr arrays or TIFF files, and patterns of TIFF files ("slice_*.tif")
+  /// .npy, .raw, .dcm, folders with zarr arrays, DICOM or TIFF files, and patterns of TIFF files
+  /// ("slice_*.tif"). DICOM files are also known by their content
   volume,
   unknown
 };
@@ -237,6 +238,9 @@ FileKind file_kind(const std::string& path, FileUse use = FileUse::read);
 
 /// List of extensions for messages and help: ".ply .obj .stl .off".
 std::string known_extensions(FileKind kind, FileUse use = FileUse::read);
+
+/// Whether a path is a DICOM file by its extension or its content, or a folder with one.
+bool is_dicom(const std::string& path);
 
 /// Whether read_surface() accepts files with this extension: surface formats, and .msh and .mesh, which hold
 /// a surface or a tet mesh.
