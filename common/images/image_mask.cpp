@@ -20,7 +20,8 @@ void for_each_label(const LabelGrid& image, const LabelVolume& labels, const To&
   parallel_for(0, rows, rows_grain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
       const auto y = static_cast<double>(row % static_cast<std::size_t>(image.size[1]));
-      const auto z = static_cast<double>(row / static_cast<std::size_t>(image.size[1]));
+      const std::size_t slice = row / static_cast<std::size_t>(image.size[1]);
+      const auto z = static_cast<double>(slice);
       for (std::size_t x = 0; x < row_length; ++x) {
         const Vec3 index = inverse * (image.to_input(Vec3(static_cast<double>(x), y, z)) - labels.origin) +
                            Vec3::Constant(0.5);

@@ -211,7 +211,8 @@ void VoxelWeights::finish_column(int y) {
     }
   }
   for (int x = column_begin_ - 1; x < column_end_; ++x) {
-    const Edges& edges = of_nodes_[static_cast<std::size_t>(x - column_begin_ + 1)];
+    const int column = x - column_begin_ + 1;
+    const Edges& edges = of_nodes_[static_cast<std::size_t>(column)];
     for (int e = 0; e < 4; ++e) share(e / 2, y - 1 + e % 2, x) += edges[static_cast<std::size_t>(e)];
   }
 }
@@ -275,7 +276,8 @@ void VoxelWeights::add_layer(std::array<Polygon, 4>& faces, int z) {
 /// \return their sum
 double VoxelWeights::visit_lower_plane(int z, double sign, const Visit& visit) {
   const int first = std::max(x_.begin, 0), last = std::min(x_.end, cells_[0].size) - 1;
-  const auto count = static_cast<std::size_t>(last - first + 1);
+  const int nodes = last - first + 1;
+  const auto count = static_cast<std::size_t>(nodes);
   double sum = 0;
   for (int y = y_.begin; y < y_.end; ++y) {
     // Nodes beyond the image have the values of its outermost voxels.
