@@ -77,7 +77,7 @@ bool are_images(std::vector<Input>& volumes, PrepareRun& run) {
   if (run.options.images.any()) return true;
   Input& first = volumes.front();
   if (const auto* image = std::get_if<ImageVolume>(&first.value))
-    return image->channels.size() > 1 || (volumes.size() > 1 && has_fractions(*image));
+    return (image->channels.size() > 1 || volumes.size() > 1) && has_fractions(*image);
   if (volumes.size() == 1 || !std::holds_alternative<InputFile>(first.value) || label_layers(first.name) > 1)
     return false;
   return has_fractions(take_image(first, run.seconds_waited));

@@ -8,14 +8,13 @@
 
 namespace tetwright {
 
-/// Whether volumes are images to be divided into materials: if an option of images is given, if a volume in
-/// memory has several channels, or if the first one of several has values that are not whole numbers, like
-/// probability maps.
-/// \throws InputError in the cases of read_image()
+/// Whether volumes are images to be divided into materials: if an option of images is given, or if the first
+/// of several volumes, or a volume in memory with several channels, has values that are not whole numbers,
+/// like probability maps. \throws InputError in the cases of read_image()
 bool are_images(std::vector<Input>& volumes, PrepareRun& run);
 
-/// Whether volumes that cannot be read as labels or masks are images: several, or one of several channels, with
-/// values that are not whole numbers. Reads them again.
+/// Whether volumes that cannot be read as labels or masks are images: several, or one of several channels,
+/// with values that are not whole numbers. Reads them again.
 bool are_images_after_all(const std::vector<Input>& volumes, const LabelOptions& labels);
 
 /// Reads images and divides them into materials. Adds thresholds and notes to the report.
