@@ -214,10 +214,6 @@ const VolumeFormat& need_volume_format(const std::string& path) {
   return need_format(volume_formats(), path, FileKind::volume, FileUse::read);
 }
 
-const VolumeFormat& streamed_volume_format(const std::string& name, const std::string& extension) {
-  return streamed(need_volume_format(name + extension), name);
-}
-
 NameRules names_of_groups(const SurfaceFormat& format) {
   return {
       .form = format.group_name ? format.group_name : printable_name,
@@ -363,14 +359,14 @@ ReadTetMesh read_tet_mesh_bytes(std::string_view bytes, const std::string& name,
 
 LabelVolume read_label_volume_bytes(std::string_view bytes, const std::string& name,
                                     const std::string& extension, const VolumeFileOptions& options) {
-  return labels_of(
-      volume_of_bytes(streamed_volume_format(name, extension), bytes, name, VoxelUse::labels, options));
+  return labels_of(volume_of_bytes(streamed(need_volume_format(name + extension), name), bytes, name,
+                                   VoxelUse::labels, options));
 }
 
 ImageVolume read_image_bytes(std::string_view bytes, const std::string& name, const std::string& extension,
                              const VolumeFileOptions& options) {
-  return image_of(
-      volume_of_bytes(streamed_volume_format(name, extension), bytes, name, VoxelUse::image, options));
+  return image_of(volume_of_bytes(streamed(need_volume_format(name + extension), name), bytes, name,
+                                  VoxelUse::image, options));
 }
 
 std::string streamed_extensions() {

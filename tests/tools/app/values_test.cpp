@@ -180,10 +180,9 @@ TEST_F(Values, OfAnImageElsewhereAreRefused) {
   LabelVolume image = volume_of([](const Vec3&) { return 1; });
   image.origin.x() += 100;
   write_label_volume(image, path("far.nrrd"));
-  expect_refused(
-      "prepare " + path("labels.nrrd") + " --quiet --target-tets 800 --values hu=" + path("far.nrrd") +
-          " -o " + path("no.vtu"),
-      3, {"far.nrrd", "no part of the image is in ", "(102.5, -2.5, 4.6) to (116.5, 10.5, 14.2)"});
+  expect_refused("prepare " + path("labels.nrrd") +
+                     " --quiet --target-tets 800 --values hu=" + path("far.nrrd") + " -o " + path("no.vtu"),
+                 3, {"far.nrrd", "no part of the image is in ", "(102.5, -2.5, 4.6) to (116.5, 10.5, 14.2)"});
   EXPECT_FALSE(std::filesystem::exists(path("no.vtu")));
   // Half of it.
   image.origin.x() = 12;
