@@ -76,19 +76,31 @@ std::vector<UsedIso> thresholds_of(const std::vector<float>& values, const std::
   std::vector<UsedIso> used;
   for (const IsoValue& iso : choice.isos) {
     if (!iso.value && range.low == range.high)
-      throw NothingToMeshError(file + ": --iso auto finds nothing to divide: " + has);
+      throw NothingToMeshError(
+          std::string(file).append(": --iso auto finds nothing to divide: ").append(has));
     const double value = iso.value ? *iso.value : otsu_threshold(values);
     if (!std::isfinite(value)) throw UsageError("--iso " + text_of(value) + " is no finite number");
+    const std::string text = text_of(value);
     if (value > range.high)
-      throw NothingToMeshError(file + ": nothing has the value " + text_of(value) + " of --iso or more; " +
-                               has);
+      throw NothingToMeshError(std::string(file)
+                                   .append(": nothing has the value ")
+                                   .append(text)
+                                   .append(" of --iso or more; ")
+                                   .append(has));
     if (value <= range.low)
-      throw InputError(
-          file, 0,
-          "no value is below " + text_of(value) + " of --iso, so that nothing would be outside; " + has);
+      throw InputError(file, 0,
+                       std::string("no value is below ")
+                           .append(text)
+                           .append(" of --iso, so that nothing would be outside; ")
+                           .append(has));
     for (const UsedIso& other : used)
       if (other.value == value)
-        throw UsageError("'" + other.name + "' and '" + iso.name + "' have the same --iso " + text_of(value));
+        throw UsageError(std::string("'")
+                             .append(other.name)
+                             .append("' and '")
+                             .append(iso.name)
+                             .append("' have the same --iso ")
+                             .append(text));
     used.push_back({iso.name, value, !iso.value});
   }
   return used;

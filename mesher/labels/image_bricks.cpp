@@ -89,7 +89,8 @@ class InterfaceSlopes {
     std::array<double, 3> share;
     for (std::size_t a = 0; a < 3; ++a) {
       // Centres of blocks are in their middle node.
-      const double along = static_cast<double>(node[a] - cells / 2) / cells;
+      constexpr int middle = cells / 2;
+      const double along = static_cast<double>(node[a] - middle) / cells;
       const double whole = std::floor(along);
       low[a] = std::clamp(static_cast<int>(whole), 0, counts_[a] - 1);
       high[a] = std::clamp(static_cast<int>(whole) + 1, 0, counts_[a] - 1);
@@ -177,8 +178,8 @@ class InterfaceSlopes {
     }
     std::array<RegionIndex, (cells + 1) * (cells + 1) * (cells + 1)> regions;
     const int width = read[0] - low[0], height = read[1] - low[1];
-    labels_.regions.read(
-        low, read, std::span(regions).first(static_cast<std::size_t>(width * height * (read[2] - low[2]))));
+    const int count = width * height * (read[2] - low[2]);
+    labels_.regions.read(low, read, std::span(regions).first(static_cast<std::size_t>(count)));
     const std::array<int, 3> steps{1, width, width * height};
     Sum sum;
     for (int z = low[2]; z < high[2]; ++z)
@@ -188,8 +189,9 @@ class InterfaceSlopes {
           const int i = (z - low[2]) * steps[2] + (y - low[1]) * steps[1] + (x - low[0]);
           for (std::size_t a = 0; a < 3; ++a) {
             if (here[a] + 1 >= read[a]) continue;
+            const int next = i + steps[a];
             const RegionIndex r = regions[static_cast<std::size_t>(i)],
-                              s = regions[static_cast<std::size_t>(i + steps[a])];
+                              s = regions[static_cast<std::size_t>(next)];
             if (r == s) continue;
             VoxelIndex there = here;
             ++there[a];
@@ -302,9 +304,10 @@ class BrickMaker {
     std::size_t i = 0;
     for (const int z : at[2])
       for (const int y : at[1])
-        for (const int x : at[0])
-          box_[i++] =
-              read[static_cast<std::size_t>(((z - low[2]) * height + (y - low[1])) * width + (x - low[0]))];
+        for (const int x : at[0]) {
+          const int from = ((z - low[2]) * height + (y - low[1])) * width + (x - low[0]);
+          box_[i++] = read[static_cast<std::size_t>(from)];
+        }
   }
 
   bool region_near(RegionIndex region) const {
@@ -322,7 +325,8 @@ class BrickMaker {
       bool beaten = false;
       for (std::size_t b = 0; b < near_.size() && !beaten; ++b)
         beaten = near_[b] && std::all_of(corners.begin(), corners.end(), [&](int c) {
-                   const auto corner = static_cast<std::size_t>(lowest + c);
+                   const int node = lowest + c;
+                   const auto corner = static_cast<std::size_t>(node);
                    return values_[b][corner] <= values_[band][corner];
                  });
       if (!beaten) return true;
@@ -337,7 +341,8 @@ class BrickMaker {
     float depth = LabelSmoother::band;
     RegionIndex nearest = own;
     for (const DepthStep& s : steps_) {
-      const RegionIndex region = box_[static_cast<std::size_t>(here + s.step)];
+      const int there = here + s.step;
+      const RegionIndex region = box_[static_cast<std::size_t>(there)];
       if (region == own) continue;
       depth = s.depth;
       nearest = region;
