@@ -373,6 +373,12 @@ class BrickMaker {
                                                : std::max<double>(half, LabelSmoother::band);
       lead = std::min(lead, potentials_[b]);
     }
+    if (at_interface && image_.thresholds().empty()) {
+      const double bias = outside_bias(band);
+      for (std::size_t b = 0; b < potentials_.size(); ++b)
+        if (b != band && (b == 0) != (band == 0)) potentials_[b] += band == 0 ? -bias : bias;
+      lead = std::max<double>(lead - (band == 0 ? bias : 0), 0);
+    }
     // The smallest difference that can be stored.
     const double min_lead = smallest ? 1 / units : ImageTuning::merged_depth;
     const float limit = at_interface ? INT16_MAX / units : LabelSmoother::band;
@@ -383,6 +389,24 @@ class BrickMaker {
       values_[b][static_cast<std::size_t>(i)] =
           static_cast<std::int16_t>(std::lrint(units * std::min<double>(distance, limit)));
     }
+  }
+
+  /// How much farther the outside counts where two channels are about equal, voxels. Where it has just their
+  /// value, as between two maps that add up to 1 with an outside probability of 0.5, rounding would else
+  /// decide at every point of their interface. \param own band of the node, to which half differences refer
+  double outside_bias(std::size_t own) const {
+    double first = HUGE_VAL, second = HUGE_VAL;
+    for (std::size_t b = 1; b < potentials_.size(); ++b) {
+      if (labels_.band_regions[b] == on_interface) continue;
+      const double half = b == own ? 0 : potentials_[b];
+      if (half < first)
+        second = first, first = half;
+      else
+        second = std::min(second, half);
+    }
+    return second < HUGE_VAL
+               ? ImageTuning::tie_bias * std::max(0.0, 1 - (second - first) / ImageTuning::tie_reach)
+               : 0;
   }
 
   /// Nodes with a voxel of another region among their 26 neighbours are less deep than this.

@@ -27,6 +27,10 @@ struct ImageTuning {
   /// Largest ratio of slopes of adjacent blocks: they change by at most an eighth from one voxel to the next,
   /// which moves an interface by at most 0.03 voxels.
   static constexpr double max_slope_ratio = 2;
+  /// How much farther the outside counts where two channels are equal, and the difference of theirs from
+  /// which on it does not, voxels: far above rounding and far below the size of cells; beyond the voxels
+  /// beside an interface.
+  static constexpr double tie_bias = 0.05, tie_reach = 1.5;
   /// Largest margin of points in a cube of eight voxels that an interface crosses, voxels: half of its
   /// diagonal, and a little.
   static constexpr double max_mixed_margin = 0.9;

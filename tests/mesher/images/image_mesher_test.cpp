@@ -180,6 +180,18 @@ TEST(ImageMesher, ChannelsMeetWhereTheyAreEqual) {
   EXPECT_LT(found.most, 0.1);
 }
 
+TEST(ImageMesher, TheOutsideDoesNotComeBetweenMapsThatAddUpToOne) {
+  // It has the value of both on all of their interface.
+  const Function left = [](const Vec3& p) { return 1 / (1 + std::exp(1.3 * (p[0] - 9.5))); };
+  const Function right = [&](const Vec3& p) { return 1 - left(p); };
+  ImageChoice choice;
+  choice.names = {"left", "right"};
+  choice.outside = 0.5;
+  const DenseMesh made = checked_mesh(input_of(image_of({20, 18, 16}, {left, right}), choice), 1.0);
+  for (const InterfaceTriangle& t : made.mesh.interfaces) EXPECT_TRUE(t.other || t.patch != 0);
+  EXPECT_NEAR(volume_of(made.mesh, 1) + volume_of(made.mesh, 2), 20 * 18 * 16, 1);
+}
+
 TEST(ImageMesher, AnOutsideValueBoundsChannels) {
   const Vec3 centre(9.5, 9.5, 9.5);
   const ImageVolume image = image_of({20, 20, 20}, {[&](const Vec3& p) { return 7 - (p - centre).norm(); }});
@@ -357,8 +369,8 @@ TEST(ImageMesher, ContrastOfAnotherMaterialNearbyDoesNotMoveAnInterface) {
   ImageChoice choice;
   choice.isos = {{"bone", 20.0}, {"metal", 2100.0}};
   const DenseMesh made = checked_mesh(input_of(image, choice), cells_of(1, 0));
-  const Misses found =
-      misses(made.mesh, [&](const Vec3& p) { return std::min(std::abs(p[0] - 9.5), std::abs(p[0] - 19.714)); });
+  const Misses found = misses(
+      made.mesh, [&](const Vec3& p) { return std::min(std::abs(p[0] - 9.5), std::abs(p[0] - 19.714)); });
   EXPECT_LT(found.rms, 0.04);
 }
 
