@@ -99,8 +99,9 @@ constexpr std::array request_table = std::to_array<DiagnosticKind>({
      .severity = Severity::shortfall,
      .yields = Yields::to_acceptance,
      .title = "contacts differ from the input",
-     .message = "not the contacts of the input: N faces join what only meets in a curve, one at X Y Z; 'NAME' "
-                "touches 'NAME' at X Y Z, where no voxels do",
+     .message =
+         "not the contacts of the input: N faces join what only meets in a curve, one at X Y Z; 'NAME' "
+         "touches 'NAME' at X Y Z, where no voxels do",
      .cause =
          "Where four and more surfaces meet in a curve, cells are too large to keep apart what only touches "
          "there. Labels that no voxels bring together touch, or those that share voxel faces no longer do.",
@@ -135,8 +136,9 @@ constexpr std::array request_table = std::to_array<DiagnosticKind>({
      .severity = Severity::shortfall,
      .yields = Yields::to_acceptance,
      .title = "labels changed by merging",
-     .message = "merging islands changed labels: 'NAME' has N voxels instead of N; two parts of 'NAME' became "
-                "one at X Y Z",
+     .message =
+         "merging islands changed labels: 'NAME' has N voxels instead of N; two parts of 'NAME' became "
+         "one at X Y Z",
      .cause = "Small islands of a label were more than 2 % of its voxels, or their voxels joined two larger "
               "parts.",
      .remedy = "A smaller `--min-voxels`; 0 keeps all islands."},

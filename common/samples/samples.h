@@ -21,7 +21,8 @@ namespace tetwright {
 ///   top of each other); random_interior, random_interior_small and random_interior_large (a coarse skin
 ///   filled with 34,000, 1,000 and 200,000 tets between random points, two in five of them slivers and
 ///   similar).
-/// - Volumes of gray values: bone (a shank in Hounsfield units: flesh around a bone, whose density rises along
+/// - Volumes of gray values: bone (a shank in Hounsfield units: flesh around a bone, whose density rises
+/// along
 ///   it, with marrow inside; blurred by a voxel, and some noise).
 /// - Segmented volumes: organs (a body with a skin one voxel thick, a spine, two organs that touch, noise)
 ///   and foam (a cube filled with grains) in its default size; class Foam has others.

@@ -268,8 +268,7 @@ TEST(ImageValues, AnImageElsewhereIsRefusedWithBothBoxes) {
     FAIL();
   } catch (const InputError& error) {
     const std::string what = error.what();
-    EXPECT_NE(what.find("image.nrrd: no part of the image is in mesh.vtu"), std::string::npos)
-        << what;
+    EXPECT_NE(what.find("image.nrrd: no part of the image is in mesh.vtu"), std::string::npos) << what;
     EXPECT_NE(what.find("(-0.5, -0.5, -0.5) to (5.5, 5.5, 5.5)"), std::string::npos) << what;
   }
   // Tets that are partly outside are counted, and the first one is located.

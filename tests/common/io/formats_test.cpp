@@ -46,8 +46,9 @@ TEST_F(Formats, VolumesAndTheirCompoundExtensions) {
   EXPECT_EQ(volume_path("a.zarr/b.c").extension, ".zarr");
   EXPECT_EQ(file_kind("a.nrrd", FileUse::write), FileKind::volume);
   EXPECT_EQ(file_kind("a.nii.gz", FileUse::write), FileKind::unknown);
-  EXPECT_EQ(known_extensions(FileKind::volume),
-            ".nrrd .nhdr .mhd .mha .nii .nii.gz .hdr .img .inr .inr.gz .zarr .tif .tiff .dcm .h5 .hdf5 .npy .raw");
+  EXPECT_EQ(
+      known_extensions(FileKind::volume),
+      ".nrrd .nhdr .mhd .mha .nii .nii.gz .hdr .img .inr .inr.gz .zarr .tif .tiff .dcm .h5 .hdf5 .npy .raw");
   EXPECT_EQ(known_extensions(FileKind::volume, FileUse::write), ".nrrd");
   EXPECT_EQ(file_stem("a/b.c/liver.NII.gz"), "liver");
   EXPECT_EQ(file_stem("liver.v2.inr.gz"), "liver.v2");
