@@ -17,28 +17,15 @@ namespace {
 
 /// Type "uint16" or "uint16be".
 std::optional<VoxelFormat> named_format(const std::string& text) {
-  constexpr std::array<std::pair<std::string_view, VoxelType>, 11> types{{{"int8", VoxelType::int8},
-                                                                          {"uint8", VoxelType::uint8},
-                                                                          {"int16", VoxelType::int16},
-                                                                          {"uint16", VoxelType::uint16},
-                                                                          {"int32", VoxelType::int32},
-                                                                          {"uint32", VoxelType::uint32},
-                                                                          {"int64", VoxelType::int64},
-                                                                          {"uint64", VoxelType::uint64},
-                                                                          {"float16", VoxelType::float16},
-                                                                          {"float32", VoxelType::float32},
-                                                                          {"float64", VoxelType::float64}}};
   std::string name = lower_case(text);
   const bool big = name.ends_with("be");
   if (big || name.ends_with("le")) name.resize(name.size() - 2);
-  for (const auto& [known, type] : types)
-    if (name == known) {
-      VoxelFormat format;
-      format.type = type;
-      format.swap = voxel_bytes(type) > 1 && big == little_endian_machine;
-      return format;
-    }
-  return std::nullopt;
+  const std::optional<VoxelType> type = voxel_type_called(name);
+  if (!type) return std::nullopt;
+  VoxelFormat format;
+  format.type = *type;
+  format.swap = voxel_bytes(*type) > 1 && big == little_endian_machine;
+  return format;
 }
 
 }  // namespace

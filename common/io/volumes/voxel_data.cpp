@@ -2,6 +2,7 @@
 #include "common/io/volumes/voxel_data.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <charconv>
 #include <cmath>
@@ -218,6 +219,23 @@ std::string name_of_use(VoxelUse use) { return use == VoxelUse::labels ? "a volu
 
 std::string numbers_to_save(VoxelUse use, const std::string& labels) {
   return use == VoxelUse::labels ? labels : "save the values of the image as floats of 32 bits";
+}
+
+std::optional<VoxelType> voxel_type_called(std::string_view name) {
+  constexpr std::array<std::pair<std::string_view, VoxelType>, 11> types{{{"int8", VoxelType::int8},
+                                                                          {"uint8", VoxelType::uint8},
+                                                                          {"int16", VoxelType::int16},
+                                                                          {"uint16", VoxelType::uint16},
+                                                                          {"int32", VoxelType::int32},
+                                                                          {"uint32", VoxelType::uint32},
+                                                                          {"int64", VoxelType::int64},
+                                                                          {"uint64", VoxelType::uint64},
+                                                                          {"float16", VoxelType::float16},
+                                                                          {"float32", VoxelType::float32},
+                                                                          {"float64", VoxelType::float64}}};
+  for (const auto& [known, type] : types)
+    if (name == known) return type;
+  return std::nullopt;
 }
 
 std::size_t voxel_bytes(VoxelType type) {

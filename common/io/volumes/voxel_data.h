@@ -31,6 +31,8 @@ std::string numbers_to_save(VoxelUse use, const std::string& labels);
 enum class VoxelType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float16, float32, float64 };
 
 std::size_t voxel_bytes(VoxelType type);
+/// The type called "uint8", "float32" and so on.
+std::optional<VoxelType> voxel_type_called(std::string_view name);
 
 /// Representation of a voxel in the file.
 struct VoxelFormat {

@@ -119,21 +119,9 @@ VoxelFormat typestr_format(const ZarrJson& array) {
 
 /// Type of items "uint16".
 VoxelType named_type(const ZarrJson& array) {
-  constexpr std::array<std::pair<std::string_view, VoxelType>, 12> types{{{"bool", VoxelType::uint8},
-                                                                          {"int8", VoxelType::int8},
-                                                                          {"uint8", VoxelType::uint8},
-                                                                          {"int16", VoxelType::int16},
-                                                                          {"uint16", VoxelType::uint16},
-                                                                          {"int32", VoxelType::int32},
-                                                                          {"uint32", VoxelType::uint32},
-                                                                          {"int64", VoxelType::int64},
-                                                                          {"uint64", VoxelType::uint64},
-                                                                          {"float16", VoxelType::float16},
-                                                                          {"float32", VoxelType::float32},
-                                                                          {"float64", VoxelType::float64}}};
   const std::string type = array.text("data_type");
-  for (const auto& [name, value] : types)
-    if (type == name) return value;
+  if (type == "bool") return VoxelType::uint8;
+  if (const std::optional<VoxelType> known = voxel_type_called(type)) return *known;
   array.fail("items of type " + in_quotes(value_text(array.member("data_type"))) +
              " are not supported; store the labels as integers");
 }
