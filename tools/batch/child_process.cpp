@@ -34,43 +34,45 @@ void hand_on(int signal) {
   if (const pid_t id = child) kill(id, signal);
 }
 
-/// During its lifetime, signals are forwarded to the child or stay pending. The previous handling is then
-/// restored.
+/// During its lifetime, signals are forwarded to the child. The previous handling is then restored.
 class SignalsOfChild {
  public:
+  /// Before the child is started: any thread of this process may receive its signal, however early.
   SignalsOfChild() {
     sigset_t all;
     sigemptyset(&all);
     for (const int signal : handed_on) sigaddset(&all, signal);
+    // The child must not receive any before it has restored the handling.
     sigprocmask(SIG_BLOCK, &all, &mask_before_);
-  }
-  ~SignalsOfChild() {
-    for (std::size_t i = 0; i < handed_on.size(); ++i)
-      if (hands_on_) sigaction(handed_on[i], &before_[i], nullptr);
-    child = 0;
-    sigprocmask(SIG_SETMASK, &mask_before_, nullptr);
-  }
-  SignalsOfChild(const SignalsOfChild&) = delete;
-  SignalsOfChild& operator=(const SignalsOfChild&) = delete;
-
-  void hand_on_to(pid_t id) {
-    child = id;
     struct sigaction action {};
     action.sa_handler = hand_on;
     for (std::size_t i = 0; i < handed_on.size(); ++i) {
       sigaction(handed_on[i], nullptr, &before_[i]);
       if (before_[i].sa_handler != SIG_IGN) sigaction(handed_on[i], &action, nullptr);
     }
-    hands_on_ = true;
+  }
+  ~SignalsOfChild() {
+    restore();
+    child = 0;
+  }
+  SignalsOfChild(const SignalsOfChild&) = delete;
+  SignalsOfChild& operator=(const SignalsOfChild&) = delete;
+
+  void hand_on_to(pid_t id) {
+    child = id;
+    // One that came before the child's number was known.
+    if (const int signal = last_signal) kill(id, signal);
     sigprocmask(SIG_SETMASK, &mask_before_, nullptr);
   }
-  /// Restores the signal mask in the child.
-  void restore_mask() const { sigprocmask(SIG_SETMASK, &mask_before_, nullptr); }
+  /// Restores the handling and the mask, in the child before its work.
+  void restore() const {
+    for (std::size_t i = 0; i < handed_on.size(); ++i) sigaction(handed_on[i], &before_[i], nullptr);
+    sigprocmask(SIG_SETMASK, &mask_before_, nullptr);
+  }
 
  private:
   sigset_t mask_before_{};
   std::array<struct sigaction, handed_on.size()> before_{};
-  bool hands_on_ = false;
 };
 
 }  // namespace
@@ -111,7 +113,7 @@ ProcessEnd run_and_wait(const std::function<int()>& work) {
     // The parent may have ended before the call.
     if (prctl(PR_SET_PDEATHSIG, SIGKILL) == 0 && getppid() != parent) _exit(0);
 #endif
-    signals.restore_mask();
+    signals.restore();
     const int status = work();
     std::fflush(nullptr);
     _exit(status);

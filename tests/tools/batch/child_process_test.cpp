@@ -2,9 +2,13 @@
 #include "tools/batch/child_process.h"
 
 #include <gtest/gtest.h>
+#include <pthread.h>
 #include <unistd.h>
 
+#include <atomic>
+#include <chrono>
 #include <csignal>
+#include <thread>
 
 namespace tetwright::child_process_test {
 namespace {
@@ -38,6 +42,35 @@ TEST(ChildProcess, GetsTheSignalsOfItsParent) {
     for (;;) pause();
     return 0;
   });
+  sigaction(SIGTERM, &before, nullptr);
+  EXPECT_EQ(end.status, 130);
+}
+
+TEST(ChildProcess, GetsASignalThatAnotherThreadReceivesBeforeForkReturns) {
+  struct sigaction before {
+  }, ending{};
+  ending.sa_handler = [](int) { _exit(130); };
+  sigaction(SIGTERM, &ending, &before);
+  static std::atomic<bool> waits = true;
+  pthread_atfork(
+      nullptr,
+      [] {
+        if (waits) std::this_thread::sleep_for(std::chrono::milliseconds(50));
+      },
+      nullptr);
+  // This thread blocks no signal, so the system delivers to it those that the other one blocks.
+  std::atomic<bool> done = false;
+  std::thread another([&] {
+    while (!done) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  });
+  const ProcessEnd end = run_in_child_process([] {
+    kill(getppid(), SIGTERM);
+    for (;;) pause();
+    return 0;
+  });
+  waits = false;
+  done = true;
+  another.join();
   sigaction(SIGTERM, &before, nullptr);
   EXPECT_EQ(end.status, 130);
 }
