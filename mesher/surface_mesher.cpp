@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/message_text.h"
+#include "common/tolerances.h"
 #include "mesher/body_field.h"
 #include "mesher/complex/labelled_complex.h"
 #include "mesher/cut/thin_wall_recovery.h"
@@ -14,14 +15,19 @@
 #include "mesher/features/cap_faces.h"
 #include "mesher/features/crease_fitting.h"
 #include "mesher/features/curve_tubes.h"
+#include "mesher/features/patches_beside_bodies.h"
 #include "mesher/features/surface_features.h"
 #include "mesher/field_mesher.h"
 #include "mesher/input/expected_solids.h"
+#include "mesher/labels/carved_field.h"
+#include "mesher/labels/carved_volume.h"
 #include "mesher/level_sets/field_solid.h"
 #include "mesher/mesh_estimate.h"
 #include "mesher/sizing/narrow_sheets.h"
+#include "mesher/sizing/thin_bodies.h"
 #include "mesher/thin/field_thickness.h"
 #include "mesher/tuning/cell_tuning.h"
+#include "mesher/volume_field.h"
 #include "tetwright/error.h"
 
 namespace tetwright {
@@ -212,16 +218,38 @@ void measure_walls(DenseMesh& dense, const MaterialField& field) {
       thickened_report(find_thickened_walls(points, on_interface, *walls, *dense.field), frame);
 }
 
-/// The stages of mesh_surfaces(), in this order.
+/// What is expected of the surfaces of a volume alone.
+MesherEstimate estimate_of_bodies(const ImplantedVolume& volume, MesherOptions options) {
+  options.voxel_size = cell_size(volume.labels, options);
+  return estimate_mesh(volume.bodies, options);
+}
+
+/// Throws an error that names a label of which bodies leave nothing, or which is smaller than a cell.
+void validate_carved_labels_left(const ImplantedVolume& volume, const std::vector<std::uint8_t>& there) {
+  for (std::size_t r = 1; r < there.size(); ++r)
+    if (!there[r])
+      throw InputError(volume.labels.file, 0,
+                       "nothing is left of '" + volume.labels.materials[r - 1].name +
+                           "' beside the bodies: they cover it, or what they leave is smaller than a cell; "
+                           "leave it out by --labels, keep it by --protect-labels, or use a smaller "
+                           "--voxel-size");
+}
+
+/// The stages of mesh_surfaces() and mesh_implanted(), in this order.
 class SurfaceMeshing {
  public:
-  SurfaceMeshing(const MesherInput& input, const MesherOptions& options, Progress* progress)
-      : input_(input), options_(options), stages_(progress) {}
+  /// \param volume that the surfaces carve, or null
+  SurfaceMeshing(const MesherInput& input, const MesherOptions& options, Progress* progress,
+                 const ImplantedVolume* volume = nullptr)
+      : input_(input), options_(options), volume_(volume), stages_(progress) {}
 
   DenseMesh run() {
     stages_.begin("signed distances");
     choose_cells();
-    features_ = find_features(input_, options_, report_.cell_size);
+    if (volume_)
+      body_cells_ = cells_of_thin_bodies(input_, voxels_, options_.refinement_regions,
+                                         std::min(budget_.max_depth, budget_.max_possible), budget_.max_tets);
+    features_ = find_features(input_, options_, std::ldexp(report_.cell_size, -body_cells_.finer.refinement));
     build_distances();
     report_.seconds_sdf = stages_.seconds();
     report_.loops_sdf = stages_.loops();
@@ -230,16 +258,18 @@ class SurfaceMeshing {
     find_thin();
     report_.sheets = expected_sheets(input_);
     expect_materials(input_, *bodies_.field, interface_voxels_, thin_.finer.refinement > 0, report_);
-    FieldMesh made =
-        mesh_field(bodies_.field, std::move(interface_voxels_), std::move(thin_.finer), options_,
-                   MemoryModel{}, std::move(report_), stages_, [&](const std::vector<std::uint8_t>& there) {
-                     validate_materials_left(input_, *bodies_.field, there);
-                   });
+    if (volume_) carve_volume();
+    const CreaseCurves border = std::exchange(report_.creases, {});
+    FieldMesh made = mesh_field(
+        field_, std::move(interface_voxels_), std::move(thin_.finer), options_,
+        volume_ ? label_memory(volume_->labels, report_.cell_size) : MemoryModel{}, std::move(report_), stages_,
+        [&](const std::vector<std::uint8_t>& there) { validate_there(there); });
 
     DenseMesh dense = std::move(made.dense);
-    settle_features(input_, closed_gaps_, features_, dense);
+    settle_features(input_, closed_gaps_, features_, dense, surroundings());
     if (has_features(input_, features_)) fit_features(dense, made.parts ? &*made.parts : nullptr);
-    dense.surface = std::make_shared<const TriangleMesh>(all_surfaces(input_));
+    dense.report.creases.add(border);
+    if (!volume_) dense.surface = std::make_shared<const TriangleMesh>(all_surfaces(input_));
     if (!input_.holes.empty())
       dense.caps = std::make_shared<const SurfaceCapFaces>(input_, bodies_.caps, dense.report.cell_size);
     dense.report.filling_tets = filling_tets(dense.report);
@@ -249,6 +279,23 @@ class SurfaceMeshing {
  private:
   /// The frame of voxels, and how far cells may be split.
   void choose_cells() {
+    if (volume_)
+      choose_cells_of_volume();
+    else
+      choose_cells_of_surfaces();
+    stages_.throw_if_stopped();
+    validate_limits(options_, report_.cell_size);
+    budget_.max_depth = options_.max_refinement.value_or(default_wall_refinement);
+    budget_.deeper_where_cheap = !options_.max_refinement;
+    if (options_.uniform) budget_.max_depth = 0, budget_.deeper_where_cheap = false;
+    budget_.max_possible = max_possible_refinement(voxels_, largest_coordinate(input_));
+    budget_.base_tets =
+        std::max(CellTuning::WallBudget::min_cheap_tets, static_cast<double>(report_.estimate.tets));
+    budget_.max_tets =
+        std::max(options_.max_thin_tets > 0 ? options_.max_thin_tets : CellTuning::WallBudget::max_added_tets,
+                 budget_.base_tets);
+  }
+  void choose_cells_of_surfaces() {
     report_.cell_size = cell_size(input_, options_);
     if (options_.keep_outside) validate_outside_is_free(input_);
     if (longest_side(input_) < report_.cell_size) {
@@ -260,19 +307,51 @@ class SurfaceMeshing {
     report_.resolution = static_cast<int>(std::ceil(longest_side(input_) / report_.cell_size - 0.5));
     report_.estimate = estimate_mesh(input_, options_);
     validate_estimate(report_.estimate);
-    stages_.throw_if_stopped();
-    validate_limits(options_, report_.cell_size);
     voxels_ =
         make_grid_frame(input_.low, input_.high, report_.cell_size, options_.uniform, options_.keep_outside);
-    budget_.max_depth = options_.max_refinement.value_or(default_wall_refinement);
-    budget_.deeper_where_cheap = !options_.max_refinement;
-    if (options_.uniform) budget_.max_depth = 0, budget_.deeper_where_cheap = false;
-    budget_.max_possible = max_possible_refinement(voxels_, largest_coordinate(input_));
-    budget_.base_tets =
-        std::max(CellTuning::WallBudget::min_cheap_tets, static_cast<double>(report_.estimate.tets));
-    budget_.max_tets =
-        std::max(options_.max_thin_tets > 0 ? options_.max_thin_tets : CellTuning::WallBudget::max_added_tets,
-                 budget_.base_tets);
+  }
+  /// Cells of the volume, and the distances of its labels.
+  void choose_cells_of_volume() {
+    const LabelInput& labels = volume_->labels;
+    const double cell = cell_size(labels, options_);
+    const double max_cell = CellTuning::LabelCells::max_with_bodies * voxel_size(labels);
+    if (cell > (1 + tolerance::coinciding_cells) * max_cell)
+      throw UsageError("cells of " + short_number(cell) +
+                       " are too large beside bodies in a segmented volume; at most two voxels, " +
+                       short_number(max_cell) + ", are possible");
+    if (options_.keep_outside) validate_outside_is_free(input_);
+    validate_estimate(estimate_mesh(*volume_, options_));
+    VolumeField made = make_volume_field(labels, options_, report_, stages_.progress());
+    labels_ = std::move(made.field);
+    label_cells_ = std::move(made.finer);
+    voxels_ = labels_->voxels();
+    const MesherEstimate bodies = estimate_of_bodies(*volume_, options_);
+    report_.estimate.tets += bodies.tets;
+    report_.estimate.bytes += bodies.bytes;
+    validate_estimate(report_.estimate);
+  }
+
+  /// Combines bodies with the volume around them.
+  void carve_volume() {
+    field_ = CarvedField::make(labels_, bodies_.field, protected_regions(*volume_));
+    report_.carved = measure_carving(*volume_, *bodies_.field, stages_.progress());
+    interface_voxels_ = field_->interface_voxels();
+    thin_.finer = combine(std::move(thin_.finer), std::move(label_cells_));
+    // What protected labels keep of a body is not known from its surface.
+    if (!volume_->protected_labels.empty()) report_.expected.clear();
+  }
+  Surroundings surroundings() const {
+    if (!volume_) return Surroundings::outside;
+    return volume_->protected_labels.empty() ? Surroundings::labels : Surroundings::protected_labels;
+  }
+  /// \param there by region of the field
+  void validate_there(const std::vector<std::uint8_t>& there) const {
+    if (!volume_) return validate_materials_left(input_, *bodies_.field, there);
+    const auto labels = static_cast<std::ptrdiff_t>(volume_->labels.materials.size()) + 1;
+    validate_carved_labels_left(*volume_, {there.begin(), there.begin() + labels});
+    std::vector<std::uint8_t> of_bodies(there.begin() + labels - 1, there.end());
+    of_bodies[outside_region] = there[outside_region];
+    validate_materials_left(input_, *bodies_.field, of_bodies);
   }
 
   /// The signed distance of each region, with cells for narrow patches, thin walls and requested sizes.
@@ -283,7 +362,8 @@ class SurfaceMeshing {
       const std::vector<RefinementRegion> narrow = find_narrow_sheets(*input_.complex, report_.cell_size);
       regions.insert(regions.end(), narrow.begin(), narrow.end());
     }
-    const NarrowPatches asked = cells_around(regions, voxels_, max_depth, budget_.base_tets);
+    const NarrowPatches asked =
+        volume_ ? body_cells_ : cells_around(regions, voxels_, max_depth, budget_.base_tets);
     std::vector<BodyCells> cells;
     for (std::size_t b = 0; b < input_.bodies.size(); ++b)
       cells.push_back({find_narrow_patches(input_.bodies[b].surface, features_.bodies[b], voxels_, max_depth,
@@ -292,6 +372,7 @@ class SurfaceMeshing {
     stages_.throw_if_stopped();
     bodies_ = build_field(input_, voxels_, options_.keep_outside, {options_.min_gap, options_.min_thickness},
                           budget_, std::move(cells), stages_.progress());
+    field_ = bodies_.field;
   }
 
   /// Sheets and parts that are thin for the cells: smaller cells where these help, else a report.
@@ -329,19 +410,23 @@ class SurfaceMeshing {
   /// \param parts if there are sheets, whose faces are added
   void fit_features(DenseMesh& dense, SheetParts* parts) {
     stages_.begin("creases");
-    const double cell = dense.report.cell_size;
+    const double cell = features_.cell;
     const auto features = std::make_shared<const FeatureSurface>(
         input_, features_.bodies, CellTuning::Patches::corner_reach * cell, dense.field,
-        features_.complex ? &*features_.complex : nullptr, bodies_.caps, features_.given_up);
-    if (input_.complex)
+        features_.complex ? &*features_.complex : nullptr, bodies_.caps, features_.given_up,
+        volume_ ? dense.reference : nullptr);
+    const PatchesBesideBodies beside(dense.mesh, *features);
+    // Labels around bodies are no part of their complex.
+    if (input_.complex && !volume_)
       dense.report.strips =
           remesh_curve_tubes(dense.mesh, *input_.complex, *features, cell, parts, stages_.progress());
     if (parts) {
       const std::vector<InterfaceTriangle> sheets = sheet_faces(dense.mesh, *parts);
       dense.mesh.interfaces.insert(dense.mesh.interfaces.end(), sheets.begin(), sheets.end());
     }
-    fit_creases(dense.mesh, *features, *bodies_.field, cell);
-    measure_walls(dense, *bodies_.field);
+    fit_creases(dense.mesh, *features, *field_, cell);
+    beside.restore(dense.mesh, *features);
+    measure_walls(dense, *field_);
     // Faces across a closed gap are no part of the region on either side of it.
     for (const InterfaceTriangle& t : dense.mesh.interfaces)
       if (const SurfaceRegion group = features->group_of(t.patch);
@@ -361,12 +446,17 @@ class SurfaceMeshing {
 
   const MesherInput& input_;
   const MesherOptions& options_;
+  const ImplantedVolume* volume_;
   Stages stages_;
   MesherReport report_;
+  std::shared_ptr<const LabelField> labels_;  ///< of the volume
+  NarrowPatches body_cells_;                  ///< that are halved because bodies in it are thin
+  RefinementRegions label_cells_;             ///< that are halved because its labels are thin
   GridFrame voxels_;
   RefinementBudget budget_;
   SurfaceFeatures features_;
   BodyField bodies_;
+  std::shared_ptr<const MaterialField> field_;  ///< of the mesh: that of the bodies, and of a volume
   std::vector<std::vector<Vec3>> closed_gaps_;  ///< of each body, points on their sides, input units
   std::vector<MortonKey> interface_voxels_;
   ThinSheets thin_;
@@ -376,6 +466,18 @@ class SurfaceMeshing {
 
 double cell_size(const MesherInput& input, const MesherOptions& options) {
   return finest_cell_size(options, longest_side(input), largest_coordinate(input), input.bodies[0].file);
+}
+
+DenseMesh mesh_implanted(const ImplantedVolume& volume, const MesherOptions& options, Progress* progress) {
+  return SurfaceMeshing(volume.bodies, options, progress, &volume).run();
+}
+
+MesherEstimate estimate_mesh(const ImplantedVolume& volume, const MesherOptions& options) {
+  MesherEstimate both = estimate_mesh(volume.labels, options);
+  const MesherEstimate bodies = estimate_of_bodies(volume, options);
+  both.tets += bodies.tets;
+  both.bytes += bodies.bytes;
+  return both;
 }
 
 DenseMesh mesh_surfaces(const MesherInput& input, const MesherOptions& options, Progress* progress) {

@@ -359,4 +359,12 @@ double default_cell_size(const LabelInput& labels) {
   return std::max(voxel_size(labels), longest_side(labels) / DomainTuning::Frames::max_resolution);
 }
 
+double default_cell_size(const ImplantedVolume& volume) { return default_cell_size(volume.labels); }
+
+double cell_size_for_target(const ImplantedVolume& volume, std::size_t target_tets,
+                            const MesherOptions& options) {
+  return std::min(cell_size_for_target(volume.labels, target_tets, options),
+                  LabelCells::max_with_bodies * voxel_size(volume.labels));
+}
+
 }  // namespace tetwright

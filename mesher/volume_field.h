@@ -5,8 +5,8 @@
 #include <memory>
 #include <vector>
 
-#include "mesher/domain/material_field.h"
 #include "mesher/domain/refinement_regions.h"
+#include "mesher/labels/label_field.h"
 #include "tetwright/mesher.h"
 #include "tetwright/mesher_input.h"
 
@@ -14,7 +14,7 @@ namespace tetwright {
 
 /// Field and cells that determine the mesh of a segmented volume.
 struct VolumeField {
-  std::shared_ptr<const MaterialField> field;  ///< unrefined
+  std::shared_ptr<const LabelField> field;  ///< unrefined
   RefinementRegions finer;                     ///< cells that are halved because labels are thin
 };
 

@@ -299,6 +299,15 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
                 "that of the first one, right-anterior-superior)",
      .cause = "A header names no coordinate system, or one that is not anatomical.",
      .remedy = "Check that the parts lie where they should; write the coordinate system into the header."},
+    {.code = volume_enlarged,
+     .name = "volume-enlarged",
+     .severity = Severity::note,
+     .title = "volume enlarged around bodies",
+     .message = "N voxels of the outside (added around the volume, since the bodies extend from X Y Z to X Y Z, "
+                "and the volume from X Y Z to X Y Z)",
+     .cause = "A surface in a segmented volume reaches its border or beyond it, and bodies are not cut off.",
+     .remedy = "None if that is wanted: labels that reached the border there end as they do beside other "
+               "outside voxels, without a patch of the border."},
     {.code = tet_points_merged,
      .name = "tet-points-merged",
      .severity = Severity::note,

@@ -67,6 +67,12 @@ class FieldSampler {
   /// A sampler for the sheets of the field that uses this sampler's cache; null if the field cannot find
   /// sheets.
   virtual SheetSampler* sheets() { return nullptr; }
+  /// Signed distances of up to four regions, lattice units, and their derivatives with respect to the point.
+  virtual void values_and_gradients(const Vec3& point, std::span<const RegionIndex> regions, double* values,
+                                    Vec3* gradients) = 0;
+
+  double per_voxel() const { return per_voxel_; }  ///< lattice units
+  double min_slope() const { return min_slope_; }  ///< of the distances near interfaces
 
   /// Half the signed distance of region a minus that of region b: negative in a, zero on their interface,
   /// with a slope of about 1 there.
@@ -85,10 +91,6 @@ class FieldSampler {
       : per_voxel_(per_voxel), min_slope_(min_slope) {}
 
  private:
-  /// Signed distances of up to four regions and their gradients.
-  virtual void values_and_gradients(const Vec3& point, std::span<const RegionIndex> regions, double* values,
-                                    Vec3* gradients) = 0;
-
   double per_voxel_, min_slope_;
 };
 

@@ -38,16 +38,17 @@ class Fitter {
       unfold_junctions();
       find_points_beside_gaps();
     }
+    const bool meets_others = surface_.has_junctions() || surface_.is_surrounded();
     std::vector<double> floors(std::begin(Fitting::pass_floors), std::end(Fitting::pass_floors));
     const double last = floors.back();
-    if (surface_.has_junctions()) floors.insert(floors.end(), Fitting::junction_passes, last);
+    if (meets_others) floors.insert(floors.end(), Fitting::junction_passes, last);
     for (const double floor : floors) {
       if (!move(floor)) return;
-      if (surface_.has_junctions()) move_one_by_one(floor);
+      if (meets_others) move_one_by_one(floor);
       make_room(remaining_moves(floor));
     }
     move(last);
-    if (!surface_.has_junctions()) return;
+    if (!meets_others) return;
     move_one_by_one(last);
     move_jointly(mesh_, surface_, labels_, remaining_moves(last), cell_);
   }
@@ -202,7 +203,7 @@ class Fitter {
     };
     std::vector<Index> beside;
     // Near junctions many points wait for each other, since the curve goes where the regions meet.
-    const int last_role = surface_.has_junctions() ? 1 : 0;
+    const int last_role = surface_.has_junctions() || surface_.is_surrounded() ? 1 : 0;
     for (const Index t : tets_with(1))
       for (const Index p : mesh_.tets[t])
         if (role[p] <= last_role && is_movable(p)) {
@@ -233,7 +234,7 @@ class Fitter {
     // Where a gap ends faces are close to each other across the outside, where no tet keeps them apart.
     if (!beside_gap_.empty() && beside_gap_[p]) return false;
     const Kind kind = labels_.of(p).kind;
-    return kind == Kind::patch || kind == Kind::crease || !labels_.on_boundary(p);
+    return kind == Kind::patch || kind == Kind::crease || !labels_.on_boundary(p) || labels_.is_loose(p);
   }
 
   void find_better_place(Index p, const std::vector<Index>& star) {
@@ -273,7 +274,7 @@ class Fitter {
       if (!direction.allFinite()) continue;
       for (const double step : Fitting::room_steps) {
         Vec3 place = from + step * edge * direction;
-        if (labels_.on_boundary(p)) {
+        if (labels_.on_boundary(p) && !labels_.is_loose(p)) {
           const auto on = place_of(p, place);
           if (!on) continue;
           place = *on;

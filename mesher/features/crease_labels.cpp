@@ -44,6 +44,18 @@ CreaseLabels::CreaseLabels(TetMesh& mesh, const FeatureSurface& surface, double 
   split_chords_of_creases();  // before islands dissolve, since it leaves points in their patches
   take_kinks();
   dissolve_islands();
+  if (surface_.is_surrounded()) find_loose_points();
+}
+
+void CreaseLabels::find_loose_points() {
+  loose_.assign(points_.size(), 0);
+  for (Index i = 0; i < points_.size(); ++i) {
+    const InterfaceTriangle& first = mesh_.interfaces[triangles_at_[i].front()];
+    loose_[i] = std::all_of(triangles_at_[i].begin(), triangles_at_[i].end(), [&](Index t) {
+      const InterfaceTriangle& face = mesh_.interfaces[t];
+      return face.patch == 0 && surface_.is_beside_bodies(face) && face.pair() == first.pair();
+    });
+  }
 }
 
 void CreaseLabels::number_boundary() {
@@ -70,12 +82,18 @@ void CreaseLabels::label_points() {
         continue;
       }
       const std::vector<Index>& around = triangles_at_[i];
-      const InterfaceTriangle& first = mesh_.interfaces[around.front()];
+      // Interfaces of labels end at a body, and leave it free.
+      const auto of_body = std::find_if(around.begin(), around.end(), [&](Index t) {
+        return !surface_.is_beside_bodies(mesh_.interfaces[t]);
+      });
+      if (of_body == around.end()) continue;
+      const InterfaceTriangle& first = mesh_.interfaces[*of_body];
       Vec3 normal = Vec3::Zero();
       bool one_pair = true;
       for (const Index t : around) {
         const InterfaceTriangle& face = mesh_.interfaces[t];
-        one_pair &= face.pair() == first.pair();
+        if (surface_.is_beside_bodies(face)) continue;
+        one_pair &= surface_.are_alike(face, first);
         const Vec3& a = mesh_.points[face.ids[0]];
         normal += (mesh_.points[face.ids[1]] - a).cross(mesh_.points[face.ids[2]] - a);
       }
@@ -209,6 +227,7 @@ std::set<std::size_t> CreaseLabels::sheets_of(const std::vector<Index>& faces, b
   std::set<std::size_t> sheets, across_gaps;
   for (const Index t : faces) {
     const InterfaceTriangle& face = mesh_.interfaces[t];
+    if (surface_.is_beside_bodies(face)) continue;
     if (const auto sheet = surface_.sheet_of(face))
       sheets.insert(*sheet);
     else if (const auto across = sheet_across_gap(face))

@@ -82,6 +82,11 @@ class CreaseLabels {
   /// The patches of a boundary point on a sheet, also those that continue it beyond its border.
   PatchSet patches_on(Index point, std::size_t sheet) const { return on_sheet(number_[point], sheet); }
   bool on_boundary(Index point) const { return number_[point] != no_index; }
+  /// True for points between two labels around the bodies, off these and off the border of the volume: they
+  /// may make room for points of bodies.
+  bool is_loose(Index point) const {
+    return number_[point] != no_index && !loose_.empty() && loose_[number_[point]] != 0;
+  }
   /// The sheet that a face of the mesh lies on: FeatureSurface::sheet_of(), or sheet_across_gap().
   std::optional<std::size_t> sheet_of(const InterfaceTriangle& face) const {
     if (const auto sheet = surface_.sheet_of(face)) return sheet;
@@ -101,6 +106,7 @@ class CreaseLabels {
 
   void number_boundary();
   void label_points();
+  void find_loose_points();
   void free_rims_of_gaps();
   void smooth_labels();
   void take_corners();
@@ -152,6 +158,7 @@ class CreaseLabels {
   std::vector<FeatureLabel> labels_;  ///< by number
   /// By number: patches of inner sheets that end before the point, and whose faces there are left out later.
   std::vector<PatchSet> continued_;
+  std::vector<std::uint8_t> loose_;  ///< by number; empty without labels around the bodies
   std::vector<std::vector<Index>> triangles_at_;  ///< by number: indices into mesh_.interfaces
   std::vector<std::vector<Index>> tets_at_;       ///< by number: incident tets, for tracked points only
 };

@@ -14,8 +14,11 @@ namespace tetwright {
 FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches,
                                double corner_reach, std::shared_ptr<const MaterialField> field,
                                const ComplexPatches* complex, const std::vector<TriangleMesh>& caps,
-                               GivenUpZone given_up)
-    : field_(std::move(field)), given_up_(std::move(given_up)) {
+                               GivenUpZone given_up,
+                               std::shared_ptr<const ReferenceSurface> surroundings)
+    : field_(std::move(field)),
+      surroundings_(std::move(surroundings)),
+      given_up_(std::move(given_up)) {
   Items items;
   for (const MaterialLayer& layer : input.layers) bodies_[layer.tag] = 0;
   for (std::size_t b = 0; b < input.bodies.size(); ++b) bodies_[input.bodies[b].tag] = b;
@@ -188,6 +191,18 @@ std::optional<std::size_t> FeatureSurface::sheet_of(const InterfaceTriangle& fac
   return std::max(*first, *second);
 }
 
+bool FeatureSurface::are_alike(const InterfaceTriangle& a, const InterfaceTriangle& b) const {
+  if (!surroundings_) return a.pair() == b.pair();
+  const auto bodies_of = [&](const InterfaceTriangle& t) {
+    const auto body_of = [&](MaterialOrOutside m) {
+      return m && bodies_.contains(*m) ? m : MaterialOrOutside();
+    };
+    const MaterialOrOutside first = body_of(t.material), second = body_of(t.other);
+    return first < second ? std::pair(first, second) : std::pair(second, first);
+  };
+  return bodies_of(a) == bodies_of(b);
+}
+
 std::optional<std::size_t> FeatureSurface::sheet_across_gap(const InterfaceTriangle& face, const Vec3& at,
                                                             double reach) const {
   if (!has_junctions() || !face.other || *face.other == face.material) return {};
@@ -241,9 +256,22 @@ std::optional<FeatureSurface::Place> FeatureSurface::nearest_of_patch(const Vec3
   return Place{hit->point, normals_[hit->item], patch};
 }
 
+namespace {
+
+/// The nearer one of two places, if there are any.
+std::optional<Vec3> nearer(const Vec3& point, const std::optional<Vec3>& a, const std::optional<Vec3>& b) {
+  if (!a || !b) return a ? a : b;
+  return (*b - point).squaredNorm() < (*a - point).squaredNorm() ? b : a;
+}
+
+}  // namespace
+
 std::optional<Vec3> FeatureSurface::onto_patch(const Vec3& point, MaterialOrOutside first,
                                                MaterialOrOutside second, Patch patch,
                                                double max_distance) const {
+  if (is_beside_bodies(first, second))
+    return surroundings_->has_patches() ? surroundings_->onto_patch(point, first, second, patch, max_distance)
+                                        : surroundings_->project(point, first, second, max_distance);
   if (patch == no_patch_ || (given_up_.any() && is_given_up(point, sheet_of(patch))))
     return field_->project(point, first, second, max_distance);
   const auto place = nearest_of_patch(point, patch, max_distance);
@@ -253,8 +281,14 @@ std::optional<Vec3> FeatureSurface::onto_patch(const Vec3& point, MaterialOrOuts
 
 std::optional<Vec3> FeatureSurface::onto_crease(const Vec3& point, double max_distance) const {
   const auto place = nearest_crease(point, max_distance, [](const PatchPair&) { return true; });
-  if (!place) return {};
-  return place->point;
+  std::optional<Vec3> own;
+  if (place) own = place->point;
+  return surroundings_ ? nearer(point, own, surroundings_->onto_crease(point, max_distance)) : own;
+}
+
+std::optional<Vec3> FeatureSurface::onto_corner(const Vec3& point, double max_distance) const {
+  const std::optional<Vec3> own = corner_points_.nearest(point, {}, max_distance);
+  return surroundings_ ? nearer(point, own, surroundings_->onto_corner(point, max_distance)) : own;
 }
 
 std::optional<Vec3> FeatureSurface::onto_crease_between(const Vec3& p, const PatchPair& pair,

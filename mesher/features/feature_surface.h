@@ -52,12 +52,16 @@ class FeatureSurface : public ReferenceSurface {
   /// nearest
   ///   triangle of the body
   /// \param given_up where there are no creases, and queries for patches go to the field
+  /// \param surroundings answers queries for faces between two materials of which none is a body, the labels
+  ///   of a volume around the bodies; null for surfaces alone
   FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach,
                  std::shared_ptr<const MaterialField> field, const ComplexPatches* complex = nullptr,
-                 const std::vector<TriangleMesh>& caps = {}, GivenUpZone given_up = {});
+                 const std::vector<TriangleMesh>& caps = {}, GivenUpZone given_up = {},
+                 std::shared_ptr<const ReferenceSurface> surroundings = {});
 
   double signed_distance(const Vec3& point, MaterialTag material) const override {
-    return field_->signed_distance(point, material);
+    return surroundings_ ? surroundings_->signed_distance(point, material)
+                         : field_->signed_distance(point, material);
   }
   std::optional<Vec3> project(const Vec3& point, MaterialOrOutside first, MaterialOrOutside second,
                               double max_distance) const override {
@@ -68,10 +72,16 @@ class FeatureSurface : public ReferenceSurface {
                                  Patch patch, double max_distance) const override;
   std::optional<Vec3> onto_crease(const Vec3& point, double max_distance) const override;
   bool lacks_creases(const Vec3& point) const override { return given_up_.affects(point); }
-  std::optional<Vec3> onto_corner(const Vec3& point, double max_distance) const override {
-    return corner_points_.nearest(point, {}, max_distance);
-  }
+  std::optional<Vec3> onto_corner(const Vec3& point, double max_distance) const override;
 
+  /// Whether the bodies are in a volume with labels.
+  bool is_surrounded() const { return surroundings_ != nullptr; }
+  /// True for a face between two labels around the bodies, or between one and the outside.
+  bool is_beside_bodies(const InterfaceTriangle& face) const {
+    return is_beside_bodies(face.material, face.other);
+  }
+  /// True for two faces of one pair of materials, if all labels around the bodies count as one.
+  bool are_alike(const InterfaceTriangle& a, const InterfaceTriangle& b) const;
   /// The sheet that a face lies on. If the surfaces are one complex, the faces between two of its regions are
   /// a sheet; otherwise each body's surface is one, and a face between two materials lies on that of the
   /// later body, since later bodies carve earlier ones. std::nullopt between layers of one body, on the box
@@ -139,7 +149,13 @@ class FeatureSurface : public ReferenceSurface {
   }
 
  private:
+  bool is_beside_bodies(MaterialOrOutside first, MaterialOrOutside second) const {
+    const auto is_body = [&](MaterialOrOutside m) { return m && bodies_.contains(*m); };
+    return surroundings_ && !is_body(first) && !is_body(second);
+  }
+
   std::shared_ptr<const MaterialField> field_;
+  std::shared_ptr<const ReferenceSurface> surroundings_;
   GivenUpZone given_up_;
   Patch no_patch_ = 0;
   /// Items of the trees, until these are built.

@@ -82,7 +82,7 @@ class JointMoves {
 
   /// The directions in which a point may give way.
   PointFreedom freedom_of(Index p) const {
-    if (!labels_.on_boundary(p)) return {};
+    if (!labels_.on_boundary(p) || labels_.is_loose(p)) return {};
     const FeatureLabel& label = labels_.of(p);
     const Vec3& at = mesh_.points[p];
     PointFreedom own{0};
@@ -153,7 +153,7 @@ class JointMoves {
     for (const auto& [p, k] : local) {
       if (freedom[k].dimensions == 0 && !group.contains(p)) continue;
       Vec3 position = origin + cell_ * points[k];
-      if (labels_.on_boundary(p)) {
+      if (labels_.on_boundary(p) && !labels_.is_loose(p)) {
         const auto target = feature_target(surface_, labels_.of(p), position, cell_);
         valid &= target.has_value();
         position = target.value_or(position);

@@ -12,6 +12,7 @@
 #include "common/features/edge_uses.h"
 #include "common/geometry/projection_tree.h"
 #include "mesher/domain/material_field.h"
+#include "mesher/sizing/thin_bodies.h"
 #include "mesher/tuning/cell_tuning.h"
 #include "mesher/tuning/complex_tuning.h"
 #include "tetwright/error.h"
@@ -23,9 +24,8 @@ namespace {
 /// Size of the cells that resolve a body's patches. Bodies that are thin everywhere get smaller cells.
 double patch_cell(const RepairedSurface& surface, const MesherOptions& options, double cell) {
   if (options.uniform || surface.closed < surface.triangles.size()) return cell;
-  const double mean_thickness = 2 * std::abs(surface.volume) / surface.area;
   const int halvings = options.max_refinement.value_or(max_wall_refinement);
-  return std::clamp(mean_thickness, std::ldexp(cell, -halvings), cell);
+  return std::clamp(mean_thickness(surface), std::ldexp(cell, -halvings), cell);
 }
 
 /// How the patches of a body are found.
@@ -84,13 +84,24 @@ void add_meetings(const MesherInput& input, const TetMesh& mesh, Causes& causes)
   std::map<MaterialTag, std::size_t> bodies;
   for (const MaterialLayer& layer : input.layers) bodies[layer.tag] = 0;
   for (std::size_t b = 0; b < input.bodies.size(); ++b) bodies[input.bodies[b].tag] = b;
-  std::vector<const InterfaceTriangle*> first_at(mesh.points.size(), nullptr);
+  // Labels around the bodies are like the outside.
+  using Pair = std::pair<MaterialOrOutside, MaterialOrOutside>;
+  const auto pair_of = [&](const InterfaceTriangle& t) {
+    Pair pair = t.pair();
+    for (MaterialOrOutside* material : {&pair.first, &pair.second})
+      if (*material && !bodies.contains(**material)) material->reset();
+    return pair.first < pair.second ? pair : Pair(pair.second, pair.first);
+  };
+  std::vector<std::optional<Pair>> first_at(mesh.points.size());
   std::vector<std::uint8_t> is_junction(mesh.points.size(), 0);
-  for (const InterfaceTriangle& t : mesh.interfaces)
+  for (const InterfaceTriangle& t : mesh.interfaces) {
+    const Pair pair = pair_of(t);
+    if (!pair.second) continue;
     for (const Index p : t.ids) {
-      if (!first_at[p]) first_at[p] = &t;
-      is_junction[p] |= first_at[p]->pair() != t.pair();
+      if (!first_at[p]) first_at[p] = pair;
+      is_junction[p] |= *first_at[p] != pair;
     }
+  }
   std::set<std::pair<std::size_t, Index>> meeting;
   for (const InterfaceTriangle& t : mesh.interfaces)
     for (const Index p : t.ids) {
@@ -104,7 +115,7 @@ void add_meetings(const MesherInput& input, const TetMesh& mesh, Causes& causes)
 
 /// Where creases of bodies are given up.
 GivenUpZone find_given_up(const MesherInput& input, const std::vector<std::vector<Vec3>>& closed_gaps,
-                          const std::vector<SurfacePatches>& patches, const DenseMesh& dense) {
+                          const std::vector<SurfacePatches>& patches, const DenseMesh& dense, double cell) {
   Causes causes(patches.size());
   if (!input.complex) add_meetings(input, dense.mesh, causes);
   for (std::size_t b = 0; b < patches.size(); ++b) {
@@ -113,15 +124,15 @@ GivenUpZone find_given_up(const MesherInput& input, const std::vector<std::vecto
       add_self_crossings(input.bodies[b].surface, causes[b]);
     if (!patches[b].any()) causes[b] = {};
   }
-  return {std::move(causes), dense.report.cell_size};
+  return {std::move(causes), cell};
 }
 
 /// Where creases of bodies are lost: where they are given up, and where a body that crosses itself has them
 /// inside the solid or outside of it, away from the mesh's boundary.
 class LostCreases {
  public:
-  LostCreases(const MesherInput& input, const GivenUpZone& zone, const DenseMesh& dense)
-      : input_(input), zone_(zone), near_(CellTuning::Patches::junction_reach * dense.report.cell_size) {
+  LostCreases(const MesherInput& input, const GivenUpZone& zone, const DenseMesh& dense, double cell)
+      : input_(input), zone_(zone), near_(CellTuning::Patches::junction_reach * cell) {
     const auto crosses_itself = [](const MesherInput::Body& body) { return body.surface.intersects_itself; };
     if (!zone.any() || std::none_of(input.bodies.begin(), input.bodies.end(), crosses_itself)) return;
     std::vector<ProjectionTree::Item> faces;
@@ -217,10 +228,10 @@ void report_features(const MesherInput& input, const SurfaceFeatures& features, 
     if (patches[b].any() && !input.complex) {
       CreaseCurves creases;
       creases.add(find_creases(surface.points, surface.triangles, patches[b].patches,
-                               CellTuning::Patches::corner_reach * report.cell_size, patches[b].rough),
+                               CellTuning::Patches::corner_reach * features.cell, patches[b].rough),
                   surface.points);
       if (surface.closed < surface.triangles.size())
-        creases = away_from(creases, open_rims(surface), CellTuning::Patches::rim_reach * report.cell_size);
+        creases = away_from(creases, open_rims(surface), CellTuning::Patches::rim_reach * features.cell);
       if (lost.zone().has(b))
         creases = without(creases, lost.zone().piece(), [&](const Vec3& p) { return lost.contains(p, b); });
       report.creases.add(creases);
@@ -241,7 +252,7 @@ ProjectionTree touching_lines(const ComplexPatches& complex) {
 /// Reports the creases of a complex: for each sheet, those between its patches that are not given up. Omits
 /// those at lines in which bodies touch, where the mesh joins them over a few cells.
 void report_complex_creases(const MesherInput& input, const ComplexPatches& found, const LostCreases& lost,
-                            MesherReport& report) {
+                            double cell, MesherReport& report) {
   std::vector<std::vector<Triangle>> triangles(found.sheets.size());
   std::vector<std::vector<std::uint16_t>> of_triangles(found.sheets.size());
   for (std::size_t t = 0; t < input.complex->faces.size(); ++t) {
@@ -255,7 +266,7 @@ void report_complex_creases(const MesherInput& input, const ComplexPatches& foun
   for (std::size_t s = 0; s < triangles.size(); ++s) {
     CreaseCurves creases;
     creases.add(find_creases(input.complex->points, triangles[s], of_triangles[s],
-                             CellTuning::Patches::corner_reach * report.cell_size, found.rough),
+                             CellTuning::Patches::corner_reach * cell, found.rough),
                 input.complex->points);
     if (lost.zone().any())
       creases = without(creases, lost.zone().piece(), [&](const Vec3& p) {
@@ -265,17 +276,16 @@ void report_complex_creases(const MesherInput& input, const ComplexPatches& foun
         return is_given_up(regions[s].first) || is_given_up(regions[s].second);
       });
     if (!lines.empty())
-      creases = away_from(creases, lines, CellTuning::Patches::rim_reach * report.cell_size);
+      creases = away_from(creases, lines, CellTuning::Patches::rim_reach * cell);
     report.creases.add(creases);
   }
 }
 
-/// Drops creases that later bodies carve away, and creases near curves where three regions meet, which are
-/// accurate to half a cell only.
-void keep_visible(CreaseCurves& creases, const MesherInput& input, const DenseMesh& dense) {
-  if (input.bodies.size() == 1) return;
-  const double near = CellTuning::Patches::junction_reach * dense.report.cell_size;
-  CreaseCurves junctions = mesh_junctions(dense.mesh);
+/// Drops creases that later bodies or protected labels cover, and creases near `junctions`, curves where three
+/// regions meet, which are accurate to half a cell only.
+void keep_visible(CreaseCurves& creases, const MesherInput& input, const DenseMesh& dense,
+                  double cell, CreaseCurves junctions) {
+  const double near = CellTuning::Patches::junction_reach * cell;
   std::vector<ProjectionTree::Item> segments;
   segments.reserve(junctions.segments.size());
   for (const auto& [a, b] : junctions.segments) segments.push_back({{a, b, b}, {}});
@@ -296,18 +306,18 @@ void keep_visible(CreaseCurves& creases, const MesherInput& input, const DenseMe
 }
 
 /// Sets the slack of volumes derived from distances, which chamfer creases that the mesh keeps sharp.
-void allow_for_chamfers(MesherReport& report) {
+void allow_for_chamfers(double cell, MesherReport& report) {
   double length = 0;
   for (const auto& [a, b] : report.creases.segments)
     length += (report.creases.points[b] - report.creases.points[a]).norm();
   for (ExpectedSolid& e : report.expected)
-    if (e.flaw != SurfaceFlaw::none) e.volume_slack = 0.5 * length * report.cell_size * report.cell_size;
+    if (e.flaw != SurfaceFlaw::none) e.volume_slack = 0.5 * length * cell * cell;
 }
 
 }  // namespace
 
 SurfaceFeatures find_features(const MesherInput& input, const MesherOptions& options, double cell) {
-  SurfaceFeatures found{patches_of_bodies(input, options, cell), {}, {}, {}, {}};
+  SurfaceFeatures found{patches_of_bodies(input, options, cell), {}, {}, {}, {}, cell};
   for (const MesherInput::Body& body : input.bodies)
     found.options.push_back(patch_options(body, options, cell));
   found.sheets = patches_of_sheets(input, options, cell);
@@ -322,18 +332,21 @@ bool has_features(const MesherInput& input, const SurfaceFeatures& features) {
 }
 
 void settle_features(const MesherInput& input, const std::vector<std::vector<Vec3>>& closed_gaps,
-                     SurfaceFeatures& features, DenseMesh& dense) {
-  features.given_up = find_given_up(input, closed_gaps, features.bodies, dense);
-  const LostCreases lost(input, features.given_up, dense);
+                     SurfaceFeatures& features, DenseMesh& dense, Surroundings around) {
+  features.given_up = find_given_up(input, closed_gaps, features.bodies, dense, features.cell);
+  const LostCreases lost(input, features.given_up, dense, features.cell);
   for (std::size_t b = 0; b < features.bodies.size(); ++b) give_up_creases(input, b, lost, features);
   report_features(input, features, lost, dense.report);
   if (input.complex) {
-    features.complex = complex_patches(input, features.bodies, features.sheets, dense.report.cell_size);
-    report_complex_creases(input, *features.complex, lost, dense.report);
-  } else if (has_features(input, features)) {
-    keep_visible(dense.report.creases, input, dense);
+    features.complex = complex_patches(input, features.bodies, features.sheets, features.cell);
+    report_complex_creases(input, *features.complex, lost, features.cell, dense.report);
+  } else if (input.bodies.size() > 1 && around == Surroundings::outside && has_features(input, features)) {
+    keep_visible(dense.report.creases, input, dense, features.cell, mesh_junctions(dense.mesh));
   }
-  allow_for_chamfers(dense.report);
+  // Labels end at the surfaces of bodies, whose creases stay exact there.
+  if (around == Surroundings::protected_labels || (around == Surroundings::labels && input.bodies.size() > 1))
+    keep_visible(dense.report.creases, input, dense, features.cell, {});
+  allow_for_chamfers(features.cell, dense.report);
 }
 
 }  // namespace tetwright

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -18,20 +19,29 @@ struct SurfaceFeatures {
   SheetPatches sheets;                    ///< of the complex, if there is one
   std::optional<ComplexPatches> complex;  ///< likewise; set by settle_features()
   GivenUpZone given_up;                   ///< set by settle_features()
+  double cell = 0;                        ///< edge of a finest cell at the surfaces, input units
 };
 
 /// Finds the patches of bodies and sheets.
-/// \param cell edge of a finest cell, input units; patches that are small for it are merged with neighbours
+/// \param cell edge of a finest cell at the surfaces, input units; patches that are small for it are merged with neighbours
 /// \throws InputError for more than 65,534 patches
 SurfaceFeatures find_features(const MesherInput& input, const MesherOptions& options, double cell);
 
 /// True if there are creases, junctions or named groups to fit.
 bool has_features(const MesherInput& input, const SurfaceFeatures& features);
 
+/// What surrounds bodies.
+enum class Surroundings : std::uint8_t {
+  outside,
+  labels,           ///< of a segmented volume, which the bodies carve
+  protected_labels  ///< some of which they do not carve
+};
+
 /// Gives up creases where the finished mesh cannot have them, and reports the others in `dense.report`:
 /// `features`, `creases`, and the slack that they cause in expected volumes.
 /// \param closed_gaps of each body, points on the sides of gaps that are closed, input units
 void settle_features(const MesherInput& input, const std::vector<std::vector<Vec3>>& closed_gaps,
-                     SurfaceFeatures& features, DenseMesh& dense);
+                     SurfaceFeatures& features, DenseMesh& dense,
+                     Surroundings around = Surroundings::outside);
 
 }  // namespace tetwright

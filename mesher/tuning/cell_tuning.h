@@ -52,6 +52,8 @@ struct CellTuning {
     /// Cells larger than a voxel, in voxels, largest first: powers of two, so that halved ones align with
     /// voxels. Larger ones, halved three times, would not resolve a single voxel.
     static constexpr std::array<int, 2> large_cells{4, 2};
+    /// Largest cells beside bodies in a volume, voxels: implants are often as thin as a few voxels.
+    static constexpr double max_with_bodies = 2;
     /// Dense tets per target tet with cells this large. They are used only if they give at most this fraction
     /// of the dense tets of voxel-sized cells: where labels are thin, cells are halved anyway, and too little
     /// would be saved (Measurements, Cells of labels).
@@ -160,6 +162,9 @@ struct CellTuning {
     /// within the tolerance. No face shows a part this small, while patches that a thin body deserves are
     /// larger.
     static constexpr double sliver = 0.1;
+    /// Cells for the mean thickness of the thinnest body in a volume, that is twice its volume by its area: two
+    /// across a plate, four across a rod.
+    static constexpr double cells_of_body = 2;
     static constexpr double corner_reach = 1;  ///< cells: turns within this distance are not corners
     /// Distance, cells, from a curve where three regions meet within which creases are not reported, and max
     /// distance of a reported crease from a visible surface: such curves are accurate to half a cell only.

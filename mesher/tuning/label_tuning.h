@@ -79,6 +79,15 @@ struct LabelTuning {
     static constexpr int sweeps = 30;
   };
 
+  /// What bodies take of labels.
+  struct Carving {
+    /// Samples along each edge of a voxel that a surface passes: errors of single voxels of up to 1/8 are
+    /// independent, so that those of volumes are far below the 1 % that is compared.
+    static constexpr int samples = 4;
+    /// Share of the band from which on a point is far from surfaces.
+    static constexpr double far_share = 0.98;
+  };
+
   /// Distances at any point.
   struct Field {
     /// Min cells per voxel edge for which the guarantees hold.

@@ -152,6 +152,16 @@ void add_labels(CLI::App& app, CommandLine& c) {
       ->type_name("LIST")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option_function<std::vector<std::string>>(
+         "--protect-labels",
+         [&c](const std::vector<std::string>& all) {
+           for (const std::string& text : all) add_protected_labels(text, c.options.labels);
+         },
+         "Labels that surfaces in a segmented volume do not carve: numbers, ranges and names, such as "
+         "3,5-9,skull")
+      ->type_name("LIST")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   app.add_option("--label-names", c.options.labels.names_file,
                  "Text file with the names of labels: lines TAG NAME, or a colour table of 3D Slicer, "
                  "FreeSurfer or ITK-SNAP")

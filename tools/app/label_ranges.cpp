@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <optional>
 #include <string_view>
 
 #include "tetwright/error.h"
@@ -20,7 +21,8 @@ bool take_label(std::string_view& text, MaterialTag& label) {
   return true;
 }
 
-LabelRange parse_range(const std::string& option, const std::string& text) {
+/// \return nothing if the text is neither a label nor a range
+std::optional<LabelRange> find_range(const std::string& option, const std::string& text) {
   std::string_view left = text;
   MaterialTag first = 0;
   bool good = take_label(left, first);
@@ -29,12 +31,22 @@ LabelRange parse_range(const std::string& option, const std::string& text) {
     left.remove_prefix(1);
     good = take_label(left, last);
   }
-  if (!good || !left.empty())
-    throw UsageError(option + ": '" + text + "' is neither a label nor a range such as 5-9");
+  if (!good || !left.empty()) return std::nullopt;
   if (first > last)
     throw UsageError(option + ": '" + text + "' begins with the larger label; did you mean " +
                      std::to_string(last) + "-" + std::to_string(first) + "?");
-  return {first, last};
+  return LabelRange(first, last);
+}
+
+/// The parts of a list between commas.
+std::vector<std::string> items_of(const std::string& text) {
+  std::vector<std::string> items;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    items.push_back(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return items;
 }
 
 }  // namespace
@@ -49,12 +61,22 @@ MaterialTag parse_label(const std::string& option, const std::string& text) {
 
 std::vector<LabelRange> parse_label_ranges(const std::string& option, const std::string& text) {
   std::vector<LabelRange> ranges;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    const std::size_t end = std::min(text.find(',', begin), text.size());
-    ranges.push_back(parse_range(option, text.substr(begin, end - begin)));
-    begin = end + 1;
+  for (const std::string& item : items_of(text)) {
+    const std::optional<LabelRange> range = find_range(option, item);
+    if (!range) throw UsageError(option + ": '" + item + "' is neither a label nor a range such as 5-9");
+    ranges.push_back(*range);
   }
   return ranges;
+}
+
+void add_protected_labels(const std::string& text, LabelOptions& options) {
+  for (const std::string& item : items_of(text)) {
+    if (item.empty()) throw UsageError("--protect-labels: '" + text + "' has an empty item");
+    if (const std::optional<LabelRange> range = find_range("--protect-labels", item))
+      options.protected_labels.push_back(*range);
+    else
+      options.protected_names.push_back(item);
+  }
 }
 
 }  // namespace tetwright

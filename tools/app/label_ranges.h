@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "tetwright/prepare.h"
 #include "tetwright/tet_mesh.h"
 
 namespace tetwright {
@@ -22,5 +23,11 @@ MaterialTag parse_label(const std::string& option, const std::string& text);
 ///
 /// \throws UsageError that names `option` and the invalid part
 std::vector<LabelRange> parse_label_ranges(const std::string& option, const std::string& text);
+
+/// Adds the labels of a list to LabelOptions::protected_labels and protected_names: items that are neither a
+/// label nor a range are names.
+///
+/// \throws UsageError for an empty item, or a range that begins with the larger label
+void add_protected_labels(const std::string& text, LabelOptions& options);
 
 }  // namespace tetwright

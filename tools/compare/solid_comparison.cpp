@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <cstdio>
 #include <unordered_map>
 #include <utility>
@@ -142,6 +143,10 @@ SolidComparison compare(const LabelMaterial& label, double voxel_volume, const S
   const double voxels = expected_volume(label);
   f.expected = {.volume = voxel_volume * voxels, .components = label.parts.touching};
   f.max_components = label.parts.by_faces;
+  if (label.carved.value_or(0) > 0) {  // bodies may divide it, or take parts
+    f.expected.components = 1;
+    f.max_components = std::numeric_limits<std::size_t>::max();
+  }
   const std::vector<SolidShell> shells = shells_of(result, 0);
   f.result = numbers_of(result, shells);
   // A label may touch itself in an edge where others meet; its count is then meaningless.
@@ -163,8 +168,10 @@ SolidComparison compare(const LabelMaterial& label, double voxel_volume, const S
 double expected_volume(const LabelMaterial& label) {
   const auto voxels = static_cast<double>(label.voxels);
   // Voxels that merging took off or added count whole.
-  return label.image_volume ? *label.image_volume + voxels - static_cast<double>(label.voxels_in_file)
-                            : voxels;
+  const double whole = label.image_volume
+                           ? *label.image_volume + voxels - static_cast<double>(label.voxels_in_file)
+                           : voxels;
+  return whole - label.carved.value_or(0);
 }
 
 bool is_same_volume(double volume, double meant) {

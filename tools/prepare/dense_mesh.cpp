@@ -15,6 +15,7 @@
 #include "tools/prepare/edge_sizes_input.h"
 #include "tools/prepare/expected_time.h"
 #include "tools/prepare/gap_opening.h"
+#include "tools/prepare/implant_input.h"
 
 namespace tetwright {
 
@@ -180,6 +181,39 @@ DenseMesh mesh_input(LabelInput& labels, PrepareRun& run) {
   if (need.bricks.cells > 0)
     return mesh_bricks(std::move(labels), options, static_cast<double>(need.whole.tets), need.bricks, run);
   DenseMesh dense = mesh_labels(labels, options, &run.progress);
+  if (target.tolerance) run.report.tolerance = tolerance_of(*target.tolerance, diagonal_of(dense.mesh));
+  return dense;
+}
+
+DenseMesh mesh_input(ImplantedVolume& volume, PrepareRun& run) {
+  const CellOptions& cells = run.options.cells;
+  const TargetOptions& target = run.options.target;
+  if (run.options.bricks.use == BrickOptions::Use::always || !run.options.bricks.scratch.empty())
+    throw UsageError("--bricks and --scratch do not work with surfaces in a segmented volume; leave them out");
+  if (target.tolerance && run.task == Task::mesh)
+    throw UsageError("--tolerance of 'mesh' is for surfaces alone; leave it out");
+  MesherOptions options = common_options(run);
+  const MesherInput& bodies = volume.bodies;
+  const double diagonal = (bodies.high - bodies.low).norm();
+  options.max_refinement = cells.max_refinement;
+  options.min_gap = in_input_units(cells.min_gap, diagonal);
+  options.min_thickness = in_input_units(cells.min_thickness, diagonal);
+  const bool choose = !cells.resolution && !cells.size;
+  if (choose && target.tets && !cells.max_refinement)
+    options.max_thin_tets =
+        std::clamp(thin_tets_share * static_cast<double>(*target.tets), min_thin_tets, max_thin_tets);
+  if (choose)
+    options.voxel_size = run.task == Task::prepare && target.tets
+                             ? cell_size_for_target(volume, *target.tets, options)
+                             : default_cell_size(volume);
+  const auto need = [&](const MesherOptions& of) {
+    const MesherEstimate whole = estimate_mesh(volume, of);
+    return Need{whole, static_cast<double>(whole.bytes), {}};
+  };
+  if (choose) fit_memory(volume.labels, need, options, run);
+  read_sizes(run, box_of(volume.labels));
+  DenseMesh dense = mesh_implanted(volume, options, &run.progress);
+  report_carving(*dense.report.carved, *run.report.volume);
   if (target.tolerance) run.report.tolerance = tolerance_of(*target.tolerance, diagonal_of(dense.mesh));
   return dense;
 }

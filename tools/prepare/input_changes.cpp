@@ -75,10 +75,14 @@ void find_changed_solids(const TetMesh& mesh, PrepareRun& run) {
   PrepareReport& report = run.report;
   if (!report.mesher) return;
   if (const std::optional<VolumeReport>& volume = report.volume)
+  {
+    const bool outside_is_known = !options.cells.keep_outside && !report.mesher->carved;
     report.solids = compare_labels(
-        volume->labels, options.cells.keep_outside ? std::nullopt : std::optional(volume->outside_parts),
+        volume->labels, outside_is_known ? std::optional(volume->outside_parts) : std::nullopt,
         std::abs(volume->directions.determinant()), mesh);
-  else
+    const std::vector<SolidComparison> bodies = compare_solids(report.mesher->expected, mesh);
+    report.solids.insert(report.solids.end(), bodies.begin(), bodies.end());
+  } else
     report.solids = compare_solids(report.mesher->expected, mesh);
   std::string text;
   std::vector<Vec3> places;

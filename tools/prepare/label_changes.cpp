@@ -92,6 +92,10 @@ void find_changed_contacts(const TetMesh& mesh, PrepareRun& run) {
   if (!run.report.volume || !run.report.mesher) return;
   const VolumeReport& volume = *run.report.volume;
   const bool kept_outside = run.options.cells.keep_outside;
+  std::set<MaterialOrOutside> meshed{MaterialOrOutside()};
+  for (const LabelMaterial& m : volume.labels) meshed.insert(m.tag);
+  // Surfaces in a volume touch what is around them.
+  const auto is_body = [&](const MaterialOrOutside& m) { return run.report.mesher->carved && !meshed.contains(m); };
   std::map<Pair, Vec3> touching;  // in the mesh
   for (const InterfaceTriangle& t : mesh.interfaces) {
     // The volume ends there.
@@ -100,11 +104,10 @@ void find_changed_contacts(const TetMesh& mesh, PrepareRun& run) {
       return kept_outside && material == outside_tag ? MaterialOrOutside() : material;
     };
     const Pair pair = pair_of(label(t.material), label(t.other));
+    if (is_body(pair.first) || is_body(pair.second)) continue;
     if (touching.contains(pair)) continue;
     touching[pair] = (mesh.points[t.ids[0]] + mesh.points[t.ids[1]] + mesh.points[t.ids[2]]) / 3;
   }
-  std::set<MaterialOrOutside> meshed{MaterialOrOutside()};
-  for (const LabelMaterial& m : volume.labels) meshed.insert(m.tag);
   std::set<Pair> in_voxels;
   Changes changes;
   const std::size_t min_faces = run.options.labels.min_voxels.value_or(default_min_voxels);

@@ -15,6 +15,7 @@
 #include "tetwright/io.h"
 #include "tetwright/mesher_input.h"
 #include "tools/prepare/image_input.h"
+#include "tools/prepare/implant_input.h"
 #include "tools/prepare/mask_input.h"
 #include "tools/prepare/value_input.h"
 
@@ -61,45 +62,10 @@ void check_volume_file(const std::vector<Input>& inputs, const VolumeFileOptions
         "--dimensions and --voxel-type are for files of voxels alone (.raw), and no input is one");
 }
 
-/// Whether the input is a segmented volume, or several masks. The kind of a .vdb file is known only after
-/// reading; its labels are stored in `vdb_labels`.
-bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
-               std::optional<LabelVolume>& vdb_labels) {
-  bool volume = std::any_of(inputs.begin(), inputs.end(),
-                            [](const Input& input) { return input.kind() == FileKind::volume; });
-  for (const Input& input : inputs) {
-    if (!input.material.empty() || !input.is_vdb_file()) continue;
-    vdb_labels = read_label_grid(input.name);
-    volume |= vdb_labels.has_value();
-  }
-  const LabelOptions& labels = options.labels;
-  check_volume_file(inputs, options.volume_file, volume);
-  if (!volume) {
-    if (options.values.own_label)
-      throw UsageError(
-          "--values-mask labels is for segmented volumes, and no input is one; give a volume, --values-mask "
-          "FILE");
-    if (!labels.meshed.empty() || !labels.names_file.empty() || labels.outside || labels.min_voxels)
-      throw UsageError(
-          "--labels, --label-names, --outside-label and --min-voxels are for segmented volumes, and no "
-          "input is one");
-    if (options.images.any())
-      throw UsageError("--iso, --outside-probability and --smooth are for images, and no input is a volume");
-    return false;
-  }
-  if (std::any_of(inputs.begin(), inputs.end(),
-                  [](const Input& input) { return input.role != Input::Role::body; }))
-    throw UsageError("--sheet and --partition are for surfaces, and the input is a segmented volume");
-  if (inputs.size() > 1 && (vdb_labels || std::any_of(inputs.begin(), inputs.end(), [](const Input& input) {
-                              return input.kind() != FileKind::volume;
-                            })))
-    throw UsageError(
-        "a segmented volume and surfaces, or a .vdb file of labels and another input, cannot be meshed "
-        "together; leave out all others");
+/// Rejects options for surfaces if there are none.
+void check_body_options(const PrepareOptions& options) {
   const CellOptions& cells = options.cells;
   const BodyOptions& bodies = options.bodies;
-  if (!bodies.layers.empty())
-    throw UsageError("--layer is for surfaces, and the input is a segmented volume");
   if (cells.max_refinement || cells.min_gap || cells.min_thickness)
     throw UsageError(
         "--max-refinement, --min-gap and --min-thickness are for surfaces, and the input is a segmented "
@@ -112,11 +78,6 @@ bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
     throw UsageError("--nested is for surfaces, and the input is a segmented volume");
   if (bodies.contact_tolerance)
     throw UsageError("--contact-tolerance is for surfaces, and the input is a segmented volume");
-  if (vdb_labels && options.images.any())
-    throw UsageError("--iso, --outside-probability and --smooth are for images, and " + inputs.front().name +
-                     " holds labels");
-  if (bodies.overlap != OverlapRule::later && (vdb_labels || !are_masks(inputs)))
-    throw UsageError("--on-overlap is for surfaces and masks, and the input is one segmented volume");
   if (bodies.regions.rule != RegionRule::cells || !bodies.regions.seeds.empty())
     throw UsageError(
         "--regions and --region are for surfaces, and the input is a segmented volume; --label-names names "
@@ -124,7 +85,68 @@ bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
   if (!bodies.caps.empty()) throw UsageError("--cap is for surfaces, and the input is a segmented volume");
   if (bodies.base || bodies.thickness)
     throw UsageError("--base and --thicken are for surfaces, and the input is a segmented volume");
-  return true;
+  if (options.labels.protects_any())
+    throw UsageError("--protect-labels is for surfaces in a segmented volume, and there is no surface");
+}
+
+/// The volumes and surfaces among the inputs.
+struct InputKinds {
+  bool volume = false;
+  std::vector<Input> implants;  ///< surfaces in a volume, taken from the inputs
+  std::optional<LabelVolume> vdb_labels;
+};
+
+/// Tells segmented volumes, several masks, images and surfaces apart. The kind of a .vdb file is known only
+/// after reading.
+InputKinds find_kinds(std::vector<Input>& inputs, const PrepareOptions& options) {
+  InputKinds kinds;
+  bool& volume = kinds.volume;
+  std::optional<LabelVolume>& vdb_labels = kinds.vdb_labels;
+  volume = std::any_of(inputs.begin(), inputs.end(),
+                       [](const Input& input) { return input.kind() == FileKind::volume; });
+  const Input* label_file = nullptr;
+  for (const Input& input : inputs) {
+    if (!input.material.empty() || !input.is_vdb_file()) continue;
+    std::optional<LabelVolume> found = read_label_grid(input.name);
+    if (!found) continue;
+    if (volume)
+      throw UsageError("a .vdb file of labels and another volume cannot be meshed together; leave out " +
+                       input.name + " or the others");
+    vdb_labels = std::move(found);
+    label_file = &input;
+    volume = true;
+  }
+  const LabelOptions& labels = options.labels;
+  check_volume_file(inputs, options.volume_file, volume);
+  if (!volume) {
+    if (options.values.own_label)
+      throw UsageError(
+          "--values-mask labels is for segmented volumes, and no input is one; give a volume, --values-mask "
+          "FILE");
+    if (!labels.meshed.empty() || !labels.names_file.empty() || labels.outside || labels.min_voxels)
+      throw UsageError(
+          "--labels, --label-names, --outside-label and --min-voxels are for segmented volumes, and no "
+          "input is one");
+    if (labels.protects_any())
+      throw UsageError("--protect-labels is for surfaces in a segmented volume, and no input is a volume");
+    if (options.images.any())
+      throw UsageError("--iso, --outside-probability and --smooth are for images, and no input is a volume");
+    return kinds;
+  }
+  if (std::any_of(inputs.begin(), inputs.end(),
+                  [](const Input& input) { return input.role != Input::Role::body; }))
+    throw UsageError("--sheet and --partition are for surfaces, and the input is a segmented volume");
+  if (!options.bodies.layers.empty())
+    throw UsageError("--layer is for surfaces, and the input is a segmented volume");
+  if (vdb_labels && options.images.any())
+    throw UsageError("--iso, --outside-probability and --smooth are for images, and " + label_file->name +
+                     " holds labels");
+  kinds.implants = take_implants(inputs, label_file);
+  if (!kinds.implants.empty()) return kinds;
+  check_body_options(options);
+  if (options.bodies.overlap != OverlapRule::later && (vdb_labels || !are_masks(inputs)))
+    throw UsageError("--on-overlap is for surfaces and masks, and the input is one segmented volume");
+  return kinds;
 }
 
 LabelChoice label_choice(const LabelOptions& options) {
@@ -315,10 +337,15 @@ ScanInput read_scan(std::vector<Input> inputs, PrepareRun& run) {
   inputs = with_masks_of_folders(std::move(inputs), run.report);
   check_input_kinds(inputs, run.task);
   for (Input& input : inputs) input.volume_file = run.options.volume_file;
-  std::optional<LabelVolume> vdb_labels;
-  ScanInput input = is_volume(inputs, run.options, vdb_labels)
-                        ? ScanInput(read_volume(std::move(vdb_labels), inputs, run))
-                        : ScanInput(read_surfaces(inputs, run));
+  InputKinds kinds = find_kinds(inputs, run.options);
+  const auto read = [&]() -> ScanInput {
+    if (!kinds.volume) return read_surfaces(inputs, run);
+    LabelInput labels = read_volume(std::move(kinds.vdb_labels), inputs, run);
+    if (kinds.implants.empty()) return labels;
+    MesherInput bodies = read_surfaces(kinds.implants, run);
+    return join_implants(std::move(labels), std::move(bodies), run);
+  };
+  ScanInput input = read();
   run.report.seconds_read = watch.seconds();
   run.report.loops_read = watch.loops();
   return input;

@@ -185,7 +185,8 @@ Box3 box_of_scan(const ScanInput& input) {
       for (const Vec3& p : body.surface.points) box.add(p);
     return box;
   }
-  const auto& labels = std::get<LabelInput>(input);
+  const auto* implanted = std::get_if<ImplantedVolume>(&input);
+  const LabelInput& labels = implanted ? implanted->labels : std::get<LabelInput>(input);
   for (int corner = 0; corner < 8; ++corner) {
     Vec3 index;
     for (int a = 0; a < 3; ++a)

@@ -99,6 +99,7 @@ enum class DiagnosticCode : std::uint8_t {
   masks_empty,
   space_converted,
   space_unknown,
+  volume_enlarged,
   // Tet meshes.
   tet_points_merged,
   tets_collapsed,

@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tetwright/loop_times.h"
@@ -125,6 +127,13 @@ struct StripReport {
   Vec3 place = Vec3::Zero();  ///< of one of them, input units
 };
 
+/// What bodies take of the labels that they carve, and of the outside.
+struct CarvedLabels {
+  std::map<MaterialOrOutside, double> voxels;  ///< by label; fractions at the surfaces of bodies
+  /// Voxel faces between two labels with a side in a body, by pair; the outside or the smaller label first.
+  std::map<std::pair<MaterialOrOutside, MaterialOrOutside>, std::uint64_t> faces;
+};
+
 struct MesherReport {
   double cell_size = 0;   ///< edge of a finest cell (a voxel), input units
   int resolution = 0;     ///< finest cells along the longest side
@@ -147,6 +156,7 @@ struct MesherReport {
   std::vector<ExpectedSheet> sheets;    ///< inside bodies, as MesherInput::sheets
   std::vector<FeatureReport> features;  ///< of each surface, in their order
   CreaseCurves creases;                 ///< creases of all surfaces
+  std::optional<CarvedLabels> carved;   ///< of a segmented volume with bodies
   bool out_of_time = false;             ///< a deadline ended the search for small enough cells
   MesherEstimate estimate;              ///< from the input, see estimate_mesh()
   MesherEstimate lattice_estimate;      ///< from the regions of the lattice points
@@ -253,6 +263,17 @@ DenseMesh mesh_within(const MesherInput& input, MesherOptions options, double to
 /// \throws InputError if nothing is left of a label, and otherwise as mesh_surfaces() does
 DenseMesh mesh_labels(const LabelInput& labels, const MesherOptions& options, Progress* progress);
 
+/// Meshes a segmented volume with bodies in it: their surfaces are the interfaces there, with creases and
+/// corners, and labels end at them. Cells are chosen and refined as by mesh_labels() at labels and as by
+/// mesh_surfaces() at bodies; `options.voxel_size` is at most two voxels.
+///
+/// \param progress may be null
+/// \throws Error in the cases of mesh_labels() and mesh_surfaces()
+DenseMesh mesh_implanted(const ImplantedVolume& volume, const MesherOptions& options, Progress* progress);
+
+/// Estimates the result of mesh_implanted(): that of both parts together.
+MesherEstimate estimate_mesh(const ImplantedVolume& volume, const MesherOptions& options);
+
 /// Estimates the result of mesh_labels() from the faces between voxels of different labels and the voxels
 /// where labels are thin: mostly within 25 %.
 /// \throws UsageError and InputError for options, as mesh_labels() does
@@ -268,6 +289,10 @@ double default_cell_size(const LabelInput& labels);
 /// \param options its cell size is ignored
 /// \throws UsageError for a target of 0
 double cell_size_for_target(const LabelInput& labels, std::size_t target_tets, const MesherOptions& options);
+
+double default_cell_size(const ImplantedVolume& volume);
+double cell_size_for_target(const ImplantedVolume& volume, std::size_t target_tets,
+                            const MesherOptions& options);
 
 /// The resolution that gives about 40 dense tets per target tet, enough for the simplifier to have a choice,
 /// or 100 if surfaces have creases at this angle. It is at least 32, and gives at most about 20 million dense

@@ -374,6 +374,8 @@ struct LabelMaterial {
   /// Volume between the interfaces of an image before merging, voxels; std::nullopt for labels, whose volume
   /// is that of their voxels.
   std::optional<double> image_volume = {};
+  /// Voxels that bodies take; std::nullopt: there are none in the volume.
+  std::optional<double> carved = {};
 };
 
 /// A chosen label that is not meshed because all its voxels were in small islands.
@@ -446,6 +448,22 @@ struct LabelInput {
 /// \throws Interrupted
 LabelInput make_label_input(std::unique_ptr<const LabelSource> source, const std::string& file,
                             const LabelChoice& choice, Progress* progress);
+
+/// A segmented volume with bodies that carve its labels: implants, electrodes, tools. Ready to be meshed.
+struct ImplantedVolume {
+  LabelInput labels;
+  MesherInput bodies;                         ///< without layers and sheets
+  std::vector<MaterialTag> protected_labels;  ///< that bodies do not carve, ascending
+};
+
+/// Puts bodies into a segmented volume. Where a body comes within two voxels of the volume's border, outside
+/// voxels are added on that side, and a finding of `bodies` says so: bodies are never cut off.
+/// \throws UsageError for bodies with layers or sheets, names or tags that labels have, and a protected label
+///   that does not exist
+/// \throws InputError for a body that does not meet the volume, for bodies so far outside that the volume
+///   would have more than eight times the voxels, and for an image whose border bodies reach
+ImplantedVolume make_implanted_volume(LabelInput labels, MesherInput bodies,
+                                      std::vector<MaterialTag> protected_labels = {});
 
 /// Splits a surface into one surface per group of triangles, in the order of their first triangles. The
 /// results have no groups. A surface without groups is returned unchanged, called `name`. A group without a

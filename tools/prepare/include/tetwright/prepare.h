@@ -221,6 +221,11 @@ struct LabelOptions {
   /// Minimum size of an island, in voxels. Smaller islands join the label that they touch most.
   /// std::nullopt: default_min_voxels.
   std::optional<std::size_t> min_voxels;
+  /// Labels that surfaces in the volume do not carve: inclusive ranges, and names.
+  std::vector<std::pair<MaterialTag, MaterialTag>> protected_labels;
+  std::vector<std::string> protected_names;
+
+  bool protects_any() const { return !protected_labels.empty() || !protected_names.empty(); }
 };
 
 /// Images that are divided into materials, see ImageChoice.

@@ -88,8 +88,8 @@ struct PrepareRun {
 void report_dropped(const std::vector<Dropped>& dropped, const std::string& file, PrepareReport& report,
                     bool with_restored = true);
 
-/// A scan: surfaces, or one segmented volume.
-using ScanInput = std::variant<MesherInput, LabelInput>;
+/// A scan: surfaces, a segmented volume, or both.
+using ScanInput = std::variant<MesherInput, LabelInput, ImplantedVolume>;
 
 /// Reads and repairs the inputs for meshing, and reports findings.
 ///

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "mesher/labels/carved_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/parallel/parallel_sort.h"
+#include "mesher/tuning/cell_tuning.h"
+
+namespace tetwright {
+
+namespace {
+
+/// Regions of the volume, then the bodies.
+std::vector<FieldRegion> all_regions(const MaterialField& labels, const MaterialField& bodies) {
+  std::vector<FieldRegion> all = labels.regions();
+  all.insert(all.end(), bodies.regions().begin() + 1, bodies.regions().end());
+  return all;
+}
+
+}  // namespace
+
+/// What the fields of all refinements share.
+struct CarvedField::Rules {
+  std::vector<RegionIndex> of_protected, of_others;  ///< regions of the volume
+  std::vector<std::uint8_t> is_protected;            ///< by region of the volume; empty: none is
+  std::vector<LeafOrigin> near_bodies;               ///< leaves with distances of bodies, ascending
+};
+
+class CarvedField::Sampler final : public FieldSampler {
+ public:
+  Sampler(const CarvedField& field, std::unique_ptr<FieldSampler> labels, std::unique_ptr<FieldSampler> bodies)
+      : FieldSampler(labels->per_voxel(), labels->min_slope()),
+        rules_(*field.rules_),
+        labels_(std::move(labels)),
+        bodies_(std::move(bodies)),
+        first_body_(static_cast<RegionIndex>(field.labels_->regions().size() - 1)),
+        band_(static_cast<float>(field.band())),
+        per_voxel_(std::ldexp(1, field.refinement())),
+        distances_(field.labels_->regions().size()),
+        sheets_(*this) {}
+
+  NearestRegion nearest(const Vec3& point) override {
+    const NearestRegion body = bodies_->nearest(point), label = labels_->nearest(point);
+    return nearest_of(body, label, point);
+  }
+  NearestRegion nearest_at_voxel(int x, int y, int z) override {
+    const NearestRegion body = bodies_->nearest_at_voxel(x, y, z), label = labels_->nearest_at_voxel(x, y, z);
+    return nearest_of(body, label, per_voxel_ * Vec3(x, y, z));
+  }
+  void values(const Vec3& point, std::span<const RegionIndex> regions, float* out) override {
+    const bool any_label =
+        std::any_of(regions.begin(), regions.end(), [&](RegionIndex r) { return r <= first_body_; });
+    const NearestRegion label =
+        any_label || !rules_.of_protected.empty() ? labels_->nearest(point) : NearestRegion{};
+    const RegionIndex outside = outside_region;
+    float from_bodies = 0;
+    if (any_label) bodies_->values(point, {&outside, 1}, &from_bodies);
+    for (const RegionIndex r : regions) {
+      if (r > first_body_) {
+        const auto body = static_cast<RegionIndex>(r - first_body_);
+        bodies_->values(point, {&body, 1}, out);
+        if (!rules_.of_protected.empty()) *out = std::max(*out, -from_protected(point));
+      } else {
+        float own = -label.margin;
+        if (r != label.region) {
+          const RegionIndex both[2] = {r, label.region};
+          float distances[2];
+          labels_->values(point, both, distances);
+          own = 0.5f * (distances[0] - distances[1]);
+        }
+        *out = is_protected(r) ? own : carved(own, from_bodies);
+      }
+      ++out;
+    }
+  }
+  void values_at_voxel(int x, int y, int z, std::span<const RegionIndex> regions, float* out) override {
+    values(per_voxel_ * Vec3(x, y, z), regions, out);
+  }
+  std::optional<RegionSet> two_nearest(const Vec3& point) override {
+    const NearestRegion label = labels_->nearest(point);
+    if (is_protected(label.region)) return two_nearest_protected(point, label);
+    const NearestRegion body = bodies_->nearest(point);
+    std::optional<RegionSet> of_bodies = bodies_->two_nearest(point);
+    if (of_bodies && of_bodies->contains(outside_region))
+      of_bodies = replaced(*of_bodies, label.region);
+    else if (of_bodies)
+      of_bodies = replaced(*of_bodies, {});
+    if (body.region != outside_region) {
+      if (rules_.of_protected.empty()) return of_bodies;
+      // Inside a body, whose nearest interface may be that with a protected label.
+      const float distance = from_protected(point);
+      if (distance >= std::min(body.margin, band_)) return of_bodies;
+      return pair(static_cast<RegionIndex>(first_body_ + body.region), nearest_protected());
+    }
+    const std::optional<RegionSet> of_labels = labels_->two_nearest(point);
+    if (!of_labels || (of_bodies && body.margin < label.margin)) return of_bodies;
+    return of_labels;
+  }
+  SheetSampler* sheets() override { return bodies_->sheets() ? &sheets_ : nullptr; }
+
+ private:
+  /// The sheets between bodies.
+  class Sheets final : public SheetSampler {
+   public:
+    explicit Sheets(Sampler& of) : of_(of) {}
+    std::optional<FieldSheet> thinnest_sheet(const Vec3& point, double reach) override {
+      std::optional<FieldSheet> sheet = of_.bodies_->sheets()->thinnest_sheet(point, reach);
+      if (!sheet) return sheet;
+      sheet->region = sheet->region == outside_region
+                          ? of_.labels_->nearest(point).region
+                          : static_cast<RegionIndex>(of_.first_body_ + sheet->region);
+      return sheet;
+    }
+
+   private:
+    Sampler& of_;
+  };
+
+  bool is_protected(RegionIndex label) const {
+    return !rules_.is_protected.empty() && rules_.is_protected[label] != 0;
+  }
+  /// The distance of a label whose distance without bodies is `own`.
+  static float carved(float own, float from_bodies) {
+    return from_bodies > 0 ? from_bodies + std::max(own, 0.0f) : std::max(own, from_bodies);
+  }
+  static RegionSet pair(RegionIndex a, RegionIndex b) {
+    RegionSet both;
+    both.insert(std::min(a, b));
+    both.insert(std::max(a, b));
+    return both;
+  }
+  /// Regions of the bodies' field as those of this one.
+  RegionSet replaced(const RegionSet& of_bodies, RegionIndex label) const {
+    RegionIndex both[2] = {label, label};
+    std::size_t count = 0;
+    for (const RegionIndex r : of_bodies)
+      both[count++] = r == outside_region ? label : static_cast<RegionIndex>(first_body_ + r);
+    return pair(both[0], both[1]);
+  }
+  NearestRegion nearest_of(const NearestRegion& body, const NearestRegion& label, const Vec3& point) {
+    if (is_protected(label.region)) return {label.region, std::min(label.margin, band_)};
+    if (body.region == outside_region) return {label.region, std::min({label.margin, body.margin, band_})};
+    float margin = std::min(body.margin, band_);
+    if (!rules_.of_protected.empty()) margin = std::min(margin, from_protected(point));
+    return {static_cast<RegionIndex>(first_body_ + body.region), margin};
+  }
+  /// In a protected label, whose neighbour inside a body is the body.
+  std::optional<RegionSet> two_nearest_protected(const Vec3& point, const NearestRegion& label) {
+    std::optional<RegionSet> both = labels_->two_nearest(point);
+    if (!both) return both;
+    RegionIndex across = label.region;
+    for (const RegionIndex r : *both)
+      if (r != label.region) across = r;
+    if (is_protected(across)) return both;
+    const NearestRegion body = bodies_->nearest(point);
+    if (body.region == outside_region) return both;
+    return pair(label.region, static_cast<RegionIndex>(first_body_ + body.region));
+  }
+  /// The signed distance from the protected labels together: half the difference between the smallest
+  /// distance of one of them and that of another label. Reads the distances of all labels.
+  float from_protected(const Vec3& point) {
+    const auto smallest_of = [&](const std::vector<RegionIndex>& regions, RegionIndex* which) {
+      labels_->values(point, regions, distances_.data());
+      const auto end = distances_.begin() + static_cast<std::ptrdiff_t>(regions.size());
+      const auto smallest = std::min_element(distances_.begin(), end);
+      if (which) *which = regions[static_cast<std::size_t>(smallest - distances_.begin())];
+      return *smallest;
+    };
+    const float others = smallest_of(rules_.of_others, nullptr);
+    return 0.5f * (smallest_of(rules_.of_protected, &nearest_protected_) - others);
+  }
+  /// The protected label that from_protected() found nearest.
+  RegionIndex nearest_protected() const { return nearest_protected_; }
+
+  void values_and_gradients(const Vec3& point, std::span<const RegionIndex> regions, double* out,
+                            Vec3* slopes) override {
+    const RegionIndex label = labels_->nearest(point).region;
+    const RegionIndex outside = outside_region;
+    double from_bodies = 0;
+    Vec3 from_bodies_slope;
+    bodies_->values_and_gradients(point, {&outside, 1}, &from_bodies, &from_bodies_slope);
+    for (const RegionIndex r : regions) {
+      if (r > first_body_) {
+        const auto body = static_cast<RegionIndex>(r - first_body_);
+        bodies_->values_and_gradients(point, {&body, 1}, out, slopes);
+        keep_off_protected(point, *out, *slopes);
+      } else {
+        Vec3 own_slope;
+        const double own = label_distance(point, r, label, own_slope);
+        if (is_protected(r) || (from_bodies <= 0 && own >= from_bodies)) {
+          *out = own;
+          *slopes = own_slope;
+        } else {
+          const bool beside = from_bodies > 0 && own > 0;
+          *out = from_bodies + (beside ? own : 0);
+          *slopes = beside ? Vec3(from_bodies_slope + own_slope) : from_bodies_slope;
+        }
+      }
+      ++out;
+      ++slopes;
+    }
+  }
+  /// The distance of a label without bodies.
+  /// \param nearest the label that contains the point
+  double label_distance(const Vec3& point, RegionIndex region, RegionIndex nearest, Vec3& slope) {
+    RegionIndex other = nearest;
+    if (region == nearest) {
+      if (const auto both = labels_->two_nearest(point))
+        for (const RegionIndex r : *both)
+          if (r != nearest) other = r;
+    }
+    const RegionIndex both[2] = {region, other};
+    double values[2];
+    Vec3 slopes[2];
+    labels_->values_and_gradients(point, both, values, slopes);
+    if (other == region) {  // no other one is near
+      slope = slopes[0];
+      return values[0];
+    }
+    slope = 0.5 * (slopes[0] - slopes[1]);
+    return 0.5 * (values[0] - values[1]);
+  }
+  /// Ends a body at the protected labels.
+  void keep_off_protected(const Vec3& point, double& value, Vec3& slope) {
+    if (rules_.of_protected.empty() || -from_protected(point) <= value) return;
+    const RegionIndex inside = nearest_protected_;
+    labels_->values(point, rules_.of_others, distances_.data());
+    const auto end = distances_.begin() + static_cast<std::ptrdiff_t>(rules_.of_others.size());
+    const RegionIndex across = rules_.of_others[static_cast<std::size_t>(
+        std::min_element(distances_.begin(), end) - distances_.begin())];
+    const RegionIndex both[2] = {inside, across};
+    double values[2];
+    Vec3 slopes[2];
+    labels_->values_and_gradients(point, both, values, slopes);
+    value = 0.5 * (values[1] - values[0]);
+    slope = 0.5 * (slopes[1] - slopes[0]);
+  }
+
+  const Rules& rules_;
+  const std::unique_ptr<FieldSampler> labels_, bodies_;
+  const RegionIndex first_body_;  ///< the region before the first body's
+  const float band_;              ///< lattice units
+  const double per_voxel_;        ///< lattice units
+  std::vector<float> distances_;  ///< workspace of from_protected()
+  RegionIndex nearest_protected_ = outside_region;
+  Sheets sheets_;
+};
+
+std::shared_ptr<const CarvedField> CarvedField::make(std::shared_ptr<const LabelField> labels,
+                                                     std::shared_ptr<const MaterialField> bodies,
+                                                     std::vector<std::uint8_t> is_protected) {
+  auto rules = std::make_shared<Rules>();
+  if (std::find(is_protected.begin(), is_protected.end(), 1) == is_protected.end()) is_protected.clear();
+  for (std::size_t r = 0; r < is_protected.size(); ++r)
+    (is_protected[r] ? rules->of_protected : rules->of_others).push_back(static_cast<RegionIndex>(r));
+  rules->is_protected = std::move(is_protected);
+  rules->near_bodies = bodies->band_leaves(outside_region);
+  return std::shared_ptr<const CarvedField>(
+      new CarvedField(std::move(labels), std::move(bodies), std::move(rules)));
+}
+
+CarvedField::CarvedField(std::shared_ptr<const MaterialField> labels,
+                         std::shared_ptr<const MaterialField> bodies, std::shared_ptr<const Rules> rules)
+    : MaterialField(labels->voxels(), all_regions(*labels, *bodies),
+                    std::ldexp(std::min(labels->band(), bodies->band()), -labels->refinement()),
+                    labels->refinement()),
+      labels_(std::move(labels)),
+      bodies_(std::move(bodies)),
+      rules_(std::move(rules)) {}
+
+CarvedField::~CarvedField() { drop_samplers(); }
+
+std::unique_ptr<FieldSampler> CarvedField::sampler() const {
+  return std::make_unique<Sampler>(*this, labels_->sampler(), bodies_->sampler());
+}
+
+std::shared_ptr<const MaterialField> CarvedField::refined(int refinement) const {
+  return std::shared_ptr<const CarvedField>(
+      new CarvedField(labels_->refined(refinement), bodies_->refined(refinement), rules_));
+}
+
+std::shared_ptr<const MaterialField> CarvedField::with_true_walls() const {
+  return std::shared_ptr<const CarvedField>(
+      new CarvedField(labels_, bodies_->wall_changes()->with_true_walls(), rules_));
+}
+
+std::vector<MortonKey> CarvedField::interface_voxels() const {
+  std::vector<MortonKey> keys = labels_->interface_voxels();
+  if (rules_->of_protected.empty()) {
+    // Deep inside bodies there is no interface of labels.
+    const double half_diagonal = std::sqrt(0.75) * std::ldexp(1, bodies_->refinement());
+    const double per_voxel = std::ldexp(1, bodies_->refinement());
+    keys = parallel_collect<MortonKey>(
+        0, keys.size(), CellGrains::elements, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+          const std::unique_ptr<FieldSampler> sampler = bodies_->sampler();
+          for (std::size_t i = begin; i < end; ++i) {
+            const auto [x, y, z] = morton_decode(keys[i]);
+            const NearestRegion body =
+                sampler->nearest(per_voxel * (Vec3(x, y, z) + Vec3::Constant(0.5)));
+            if (body.region == outside_region || body.margin <= half_diagonal) out.push_back(keys[i]);
+          }
+        });
+  }
+  const std::vector<MortonKey> of_bodies = bodies_->interface_voxels();
+  keys.insert(keys.end(), of_bodies.begin(), of_bodies.end());
+  parallel_sort_unique(keys);
+  return keys;
+}
+
+std::vector<LeafOrigin> CarvedField::band_leaves(RegionIndex region) const {
+  const std::size_t labels = labels_->regions().size();
+  if (region >= labels && rules_->of_protected.empty())
+    return bodies_->band_leaves(static_cast<RegionIndex>(region - labels + 1));
+  std::vector<LeafOrigin> leaves = rules_->near_bodies;
+  const auto add = [&](RegionIndex label) {
+    const std::vector<LeafOrigin> more = labels_->band_leaves(label);
+    leaves.insert(leaves.end(), more.begin(), more.end());
+  };
+  if (region < labels)
+    add(region);
+  else
+    for (const RegionIndex r : rules_->of_protected) add(r);
+  parallel_sort_unique(leaves);
+  return leaves;
+}
+
+bool CarvedField::is_certain(const Vec3& point) const {
+  const Vec3 at = std::ldexp(1, -refinement()) * point;
+  LeafOrigin leaf;
+  for (int a = 0; a < 3; ++a) leaf[a] = static_cast<int>(std::floor(at[a] / leaf_side)) * leaf_side;
+  if (std::binary_search(rules_->near_bodies.begin(), rules_->near_bodies.end(), leaf)) return false;
+  return labels_->volume()->is_certain(point);
+}
+
+}  // namespace tetwright
