@@ -27,6 +27,7 @@
 #include "mesher/sizing/thin_bodies.h"
 #include "mesher/thin/field_thickness.h"
 #include "mesher/tuning/cell_tuning.h"
+#include "mesher/tuning/label_tuning.h"
 #include "mesher/volume_field.h"
 #include "tetwright/error.h"
 
@@ -249,7 +250,7 @@ class SurfaceMeshing {
     if (volume_)
       body_cells_ = cells_of_thin_bodies(input_, voxels_, options_.refinement_regions,
                                          std::min(budget_.max_depth, budget_.max_possible), budget_.max_tets);
-    features_ = find_features(input_, options_, std::ldexp(report_.cell_size, -body_cells_.finer.refinement));
+    features_ = find_features(input_, options_, report_.cell_size, body_cells_.sizes);
     build_distances();
     report_.seconds_sdf = stages_.seconds();
     report_.loops_sdf = stages_.loops();
@@ -260,10 +261,10 @@ class SurfaceMeshing {
     expect_materials(input_, *bodies_.field, interface_voxels_, thin_.finer.refinement > 0, report_);
     if (volume_) carve_volume();
     const CreaseCurves border = std::exchange(report_.creases, {});
-    FieldMesh made = mesh_field(
-        field_, std::move(interface_voxels_), std::move(thin_.finer), options_,
-        volume_ ? label_memory(volume_->labels, report_.cell_size) : MemoryModel{}, std::move(report_), stages_,
-        [&](const std::vector<std::uint8_t>& there) { validate_there(there); });
+    FieldMesh made = mesh_field(field_, std::move(interface_voxels_), std::move(thin_.finer), options_,
+                                volume_ ? label_memory(volume_->labels, report_.cell_size) : MemoryModel{},
+                                std::move(report_), stages_,
+                                [&](const std::vector<std::uint8_t>& there) { validate_there(there); });
 
     DenseMesh dense = std::move(made.dense);
     settle_features(input_, closed_gaps_, features_, dense, surroundings());
@@ -333,12 +334,19 @@ class SurfaceMeshing {
 
   /// Combines bodies with the volume around them.
   void carve_volume() {
-    field_ = CarvedField::make(labels_, bodies_.field, protected_regions(*volume_));
+    field_ = CarvedField::make(labels_, bodies_.field, protected_regions(*volume_), layer_around_bodies());
     report_.carved = measure_carving(*volume_, *bodies_.field, stages_.progress());
     interface_voxels_ = field_->interface_voxels();
     thin_.finer = combine(std::move(thin_.finer), std::move(label_cells_));
     // What protected labels keep of a body is not known from its surface.
     if (!volume_->protected_labels.empty()) report_.expected.clear();
+  }
+  /// The layer in which interfaces of labels turn towards bodies, voxels of the frame.
+  double layer_around_bodies() const {
+    const std::vector<double>& cells = features_.cells;
+    return std::min(LabelTuning::Carving::layer * *std::max_element(cells.begin(), cells.end()),
+                    LabelTuning::Carving::max_layer * voxel_size(volume_->labels)) /
+           voxels_.cell_size;
   }
   Surroundings surroundings() const {
     if (!volume_) return Surroundings::outside;
@@ -363,7 +371,7 @@ class SurfaceMeshing {
       regions.insert(regions.end(), narrow.begin(), narrow.end());
     }
     const NarrowPatches asked =
-        volume_ ? body_cells_ : cells_around(regions, voxels_, max_depth, budget_.base_tets);
+        volume_ ? body_cells_.cells : cells_around(regions, voxels_, max_depth, budget_.base_tets);
     std::vector<BodyCells> cells;
     for (std::size_t b = 0; b < input_.bodies.size(); ++b)
       cells.push_back({find_narrow_patches(input_.bodies[b].surface, features_.bodies[b], voxels_, max_depth,
@@ -413,7 +421,7 @@ class SurfaceMeshing {
     const double cell = features_.cell;
     const auto features = std::make_shared<const FeatureSurface>(
         input_, features_.bodies, CellTuning::Patches::corner_reach * cell, dense.field,
-        features_.complex ? &*features_.complex : nullptr, bodies_.caps, features_.given_up,
+        features_.complex ? &*features_.complex : nullptr, bodies_.caps, features_.given_up, features_.cells,
         volume_ ? dense.reference : nullptr);
     const PatchesBesideBodies beside(dense.mesh, *features);
     // Labels around bodies are no part of their complex.
@@ -450,7 +458,7 @@ class SurfaceMeshing {
   Stages stages_;
   MesherReport report_;
   std::shared_ptr<const LabelField> labels_;  ///< of the volume
-  NarrowPatches body_cells_;                  ///< that are halved because bodies in it are thin
+  BodySizes body_cells_;                      ///< that are halved because bodies in it are thin
   RefinementRegions label_cells_;             ///< that are halved because its labels are thin
   GridFrame voxels_;
   RefinementBudget budget_;

@@ -15,7 +15,7 @@ namespace tetwright {
 /// Field and cells that determine the mesh of a segmented volume.
 struct VolumeField {
   std::shared_ptr<const LabelField> field;  ///< unrefined
-  RefinementRegions finer;                     ///< cells that are halved because labels are thin
+  RefinementRegions finer;                  ///< cells that are halved because labels are thin
 };
 
 /// Computes the distances of the labels and finds the cells that are halved.

@@ -303,8 +303,9 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
      .name = "volume-enlarged",
      .severity = Severity::note,
      .title = "volume enlarged around bodies",
-     .message = "N voxels of the outside (added around the volume, since the bodies extend from X Y Z to X Y Z, "
-                "and the volume from X Y Z to X Y Z)",
+     .message =
+         "N voxels of the outside (added around the volume, since the bodies extend from X Y Z to X Y Z, "
+         "and the volume from X Y Z to X Y Z)",
      .cause = "A surface in a segmented volume reaches its border or beyond it, and bodies are not cut off.",
      .remedy = "None if that is wanted: labels that reached the border there end as they do beside other "
                "outside voxels, without a patch of the border."},

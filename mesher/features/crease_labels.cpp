@@ -112,6 +112,12 @@ void CreaseLabels::label_points() {
   });
 }
 
+double CreaseLabels::cell_of(const PatchSet& patches) const {
+  double smallest = cell_;
+  for (const FeatureSurface::Patch p : patches) smallest = std::min(smallest, cell_of(surface_.sheet_of(p)));
+  return smallest;
+}
+
 /// Erases inner sheets that only their continuations bring to a point with other sheets.
 /// \return the patches of these
 PatchSet CreaseLabels::leave_out_continuations(const Vec3& p, std::set<std::size_t>& sheets) const {
@@ -124,7 +130,7 @@ PatchSet CreaseLabels::leave_out_continuations(const Vec3& p, std::set<std::size
   };
   std::erase_if(sheets, [&](std::size_t sheet) {
     if (!surface_.is_inner(sheet)) return false;
-    const auto place = surface_.nearest(p, sheet, Labelling::surface_reach * cell_);
+    const auto place = surface_.nearest(p, sheet, Labelling::surface_reach * cell_of(sheet));
     if (place && (!surface_.is_continued(place->patch) || is_on_border(sheet))) return false;
     if (place) continued.insert(place->patch);
     return true;
@@ -156,7 +162,7 @@ FeatureLabel CreaseLabels::label_at(Index number) {
 /// \param normal of the point's faces; null: either direction
 FeatureLabel CreaseLabels::patch_label(const Vec3& p, std::size_t sheet, const Vec3* normal) const {
   if (surface_.is_given_up(p, sheet)) return {};
-  const auto place = surface_.nearest(p, sheet, Labelling::surface_reach * cell_, normal);
+  const auto place = surface_.nearest(p, sheet, Labelling::surface_reach * cell_of(sheet), normal);
   if (!place) return {};
   return {Kind::patch, {place->patch}, no_index, {}};
 }
@@ -200,7 +206,8 @@ void CreaseLabels::smooth_labels() {
     if (!alone || counts.empty()) continue;
     const auto commonest = std::max_element(counts.begin(), counts.end(),
                                             [](const auto& x, const auto& y) { return x.second < y.second; });
-    if (surface_.nearest_of_patch(mesh_.points[points_[i]], commonest->first, cell_))
+    if (surface_.nearest_of_patch(mesh_.points[points_[i]], commonest->first,
+                                  cell_of(surface_.sheet_of(commonest->first))))
       smoothed[i].patches = {commonest->first};
   }
   labels_ = std::move(smoothed);
@@ -303,9 +310,10 @@ void CreaseLabels::take_corners() {
     PatchSet meeting;
     for (const FeatureSurface::Patch p : corner.patches) meeting.insert(p);
     if (meeting.size() < 3) continue;  // see take_kinks()
+    const double cell = cell_of(meeting);
     // Two vertices would not fit next to each other.
     const auto beside = std::find_if(taken.begin(), taken.end(), [&](const Taken& t) {
-      return (surface_.corners()[t.corner].point - corner.point).norm() < Labelling::narrow_reach * cell_;
+      return (surface_.corners()[t.corner].point - corner.point).norm() < Labelling::narrow_reach * cell;
     });
     if (beside != taken.end()) {
       for (const FeatureSurface::Patch p : corner.patches) labels_[beside->number].patches.insert(p);
@@ -316,7 +324,7 @@ void CreaseLabels::take_corners() {
     if (sheets.size() > 1) {
       // A vertex where the same sheets meet.
       const auto hit = tree.nearest_of(
-          corner.point, Labelling::junction_reach * cell_, [&](const ProjectionTree::Item& item) {
+          corner.point, Labelling::junction_reach * cell, [&](const ProjectionTree::Item& item) {
             return labels_[item.kind[0]].kind == Kind::crease && sheets_at(item.kind[0]) == sheets;
           });
       if (hit) {
@@ -341,7 +349,7 @@ void CreaseLabels::take_corners() {
     };
     for (std::size_t min_patches : {std::size_t{3}, std::size_t{2}, std::size_t{1}}) {
       const auto hit =
-          tree.nearest_of(corner.point, Labelling::corner_reach * cell_,
+          tree.nearest_of(corner.point, Labelling::corner_reach * cell,
                           [&](const ProjectionTree::Item& item) { return fits(item, min_patches); });
       if (!hit) continue;
       const Index number = tree.items()[hit->item].kind[0];
@@ -382,11 +390,12 @@ std::optional<CreaseLabels::Crossing> CreaseLabels::find_crossing(const SheetEdg
       }))
     return {};
   const auto at = surface_.onto_crease_between(p + crossing.share * along, crossing.crease,
-                                               Labelling::surface_reach * cell_);
+                                               Labelling::surface_reach * cell_of(sheet));
   if (!at) return {};
   while (!(crossing.patches.meets(a) && crossing.patches.meets(b))) {
     const std::size_t known = crossing.patches.size();
-    const auto next = surface_.nearest_crease(*at, Labelling::narrow_reach * cell_, [&](const Pair& pair) {
+    const double reach = Labelling::narrow_reach * cell_of(sheet);
+    const auto next = surface_.nearest_crease(*at, reach, [&](const Pair& pair) {
       return surface_.sheet_of(pair[0]) == sheet && surface_.sheet_of(pair[1]) == sheet &&
              crossing.patches.contains(pair[0]) != crossing.patches.contains(pair[1]);
     });
@@ -474,18 +483,18 @@ void CreaseLabels::take_kinks() {
   for (Index c = 0; c < surface_.corners().size(); ++c) {
     const FeatureSurface::Corner& corner = surface_.corners()[c];
     if (corner.patches.size() > 2) continue;
-    const auto hit =
-        tree.nearest_of(corner.point, Labelling::corner_reach * cell_, [&](const ProjectionTree::Item& item) {
-          const Index i = item.kind[0];
-          // The vertex must lie between vertices of one patch and vertices of the other.
-          return labels_[i].kind == Kind::crease &&
-                 std::all_of(corner.patches.begin(), corner.patches.end(), [&](FeatureSurface::Patch p) {
-                   if (!labels_[i].patches.contains(p)) return false;
-                   bool elsewhere = false;
-                   for_neighbours(i, [&](Index q) { elsewhere |= !labels_[number_[q]].patches.contains(p); });
-                   return elsewhere;
-                 });
-        });
+    const double reach = Labelling::corner_reach * cell_of(surface_.sheet_of(corner.patches.front()));
+    const auto hit = tree.nearest_of(corner.point, reach, [&](const ProjectionTree::Item& item) {
+      const Index i = item.kind[0];
+      // The vertex must lie between vertices of one patch and vertices of the other.
+      return labels_[i].kind == Kind::crease &&
+             std::all_of(corner.patches.begin(), corner.patches.end(), [&](FeatureSurface::Patch p) {
+               if (!labels_[i].patches.contains(p)) return false;
+               bool elsewhere = false;
+               for_neighbours(i, [&](Index q) { elsewhere |= !labels_[number_[q]].patches.contains(p); });
+               return elsewhere;
+             });
+    });
     if (!hit) continue;
     FeatureLabel& own = labels_[tree.items()[hit->item].kind[0]];
     own.kind = Kind::corner;
@@ -509,7 +518,8 @@ void CreaseLabels::dissolve_islands() {
     for (const FeatureSurface::Patch patch : shared)
       if (!labels_[i].patches.contains(patch) &&
           surface_.sheet_of(patch) == surface_.sheet_of(*labels_[i].patches.begin()) &&
-          surface_.nearest_of_patch(mesh_.points[points_[i]], patch, Labelling::island_reach * cell_)) {
+          surface_.nearest_of_patch(mesh_.points[points_[i]], patch,
+                                    Labelling::island_reach * cell_of(surface_.sheet_of(patch)))) {
         labels_[i].patches = {patch};
         break;
       }

@@ -104,6 +104,9 @@ class CreaseLabels {
   using Kind = FeatureLabel::Kind;
   struct Crossing;
 
+  /// Size of the cells at a sheet, and at a corner of patches, input units.
+  double cell_of(std::size_t sheet) const { return surface_.cell_of(sheet).value_or(cell_); }
+  double cell_of(const PatchSet& patches) const;
   void number_boundary();
   void label_points();
   void find_loose_points();
@@ -158,7 +161,7 @@ class CreaseLabels {
   std::vector<FeatureLabel> labels_;  ///< by number
   /// By number: patches of inner sheets that end before the point, and whose faces there are left out later.
   std::vector<PatchSet> continued_;
-  std::vector<std::uint8_t> loose_;  ///< by number; empty without labels around the bodies
+  std::vector<std::uint8_t> loose_;               ///< by number; empty without labels around the bodies
   std::vector<std::vector<Index>> triangles_at_;  ///< by number: indices into mesh_.interfaces
   std::vector<std::vector<Index>> tets_at_;       ///< by number: incident tets, for tracked points only
 };

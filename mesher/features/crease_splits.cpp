@@ -98,7 +98,7 @@ void CreaseLabels::split_chords(const std::vector<SheetEdge>& chords) {
 /// off a point of the patch all of whose other neighbours are on creases, too, from another one. Where the
 /// crease is straight such a point could not leave it, and would hold back those around it.
 void CreaseLabels::split_chords_of_creases() {
-  if (!surface_.has_junctions()) return;
+  if (!surface_.has_junctions() && !surface_.is_surrounded()) return;
   struct Side {
     SheetEdge edge;
     Index opposite;

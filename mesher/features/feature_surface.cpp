@@ -2,6 +2,7 @@
 #include "mesher/features/feature_surface.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
@@ -14,11 +15,12 @@ namespace tetwright {
 FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches,
                                double corner_reach, std::shared_ptr<const MaterialField> field,
                                const ComplexPatches* complex, const std::vector<TriangleMesh>& caps,
-                               GivenUpZone given_up,
+                               GivenUpZone given_up, std::vector<double> cells,
                                std::shared_ptr<const ReferenceSurface> surroundings)
     : field_(std::move(field)),
       surroundings_(std::move(surroundings)),
-      given_up_(std::move(given_up)) {
+      given_up_(std::move(given_up)),
+      cells_(std::move(cells)) {
   Items items;
   for (const MaterialLayer& layer : input.layers) bodies_[layer.tag] = 0;
   for (std::size_t b = 0; b < input.bodies.size(); ++b) bodies_[input.bodies[b].tag] = b;
@@ -27,6 +29,10 @@ FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<Surfa
   else
     add_bodies(input, patches, corner_reach, caps, items);
   no_patch_ = static_cast<Patch>(groups_.size());
+  if (surroundings_)
+    for (std::size_t b = 0; b < patches.size(); ++b)
+      if (const RepairedSurface& surface = input.bodies[b].surface; patches[b].any())
+        creased_size_ = std::min(creased_size_.value_or(HUGE_VAL), (surface.high - surface.low).norm());
   auto [points, triangles, segments] = std::move(items);
   creases_ = ProjectionTree(points, std::move(segments));
   std::vector<Vec3> corner_places;
@@ -146,8 +152,9 @@ void FeatureSurface::add_bodies(const MesherInput& input, const std::vector<Surf
     for (std::size_t t = 0; t < surface.groups.size(); ++t)
       groups_[first_patch + patches[b].patches[t]] = input.bodies[b].groups[surface.groups[t]];
     const std::size_t first_item = items.triangles.size();
+    const double smaller = cells_.empty() ? 1 : cells_[b] / *std::max_element(cells_.begin(), cells_.end());
     add_triangles(surface.points, surface.triangles, patches[b].patches, patches[b].rough,
-                  static_cast<Patch>(first_patch), corner_reach, items);
+                  static_cast<Patch>(first_patch), smaller * corner_reach, items);
     if (b < caps.size()) add_caps(caps[b], first_item, items.points, items.triangles);
   }
 }
@@ -189,6 +196,14 @@ std::optional<std::size_t> FeatureSurface::sheet_of(const InterfaceTriangle& fac
   if (!first || !second) return first ? first : second;
   if (*first == *second) return {};
   return std::max(*first, *second);
+}
+
+std::optional<double> FeatureSurface::cell_of(std::size_t sheet) const {
+  if (cells_.empty()) return {};
+  if (!has_junctions()) return cells_[sheet];
+  if (sheet >= bodies_of_sheet_.size()) return {};
+  const auto [first, second] = bodies_of_sheet_[sheet];
+  return std::min(cells_[first], cells_[second]);
 }
 
 bool FeatureSurface::are_alike(const InterfaceTriangle& a, const InterfaceTriangle& b) const {

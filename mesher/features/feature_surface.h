@@ -52,12 +52,13 @@ class FeatureSurface : public ReferenceSurface {
   /// nearest
   ///   triangle of the body
   /// \param given_up where there are no creases, and queries for patches go to the field
+  /// \param cells at each body, input units, or empty
   /// \param surroundings answers queries for faces between two materials of which none is a body, the labels
   ///   of a volume around the bodies; null for surfaces alone
   FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches, double corner_reach,
                  std::shared_ptr<const MaterialField> field, const ComplexPatches* complex = nullptr,
                  const std::vector<TriangleMesh>& caps = {}, GivenUpZone given_up = {},
-                 std::shared_ptr<const ReferenceSurface> surroundings = {});
+                 std::vector<double> cells = {}, std::shared_ptr<const ReferenceSurface> surroundings = {});
 
   double signed_distance(const Vec3& point, MaterialTag material) const override {
     return surroundings_ ? surroundings_->signed_distance(point, material)
@@ -76,6 +77,10 @@ class FeatureSurface : public ReferenceSurface {
 
   /// Whether the bodies are in a volume with labels.
   bool is_surrounded() const { return surroundings_ != nullptr; }
+  std::optional<double> creased_size() const override { return creased_size_; }
+  bool has_curves_on(MaterialOrOutside first, MaterialOrOutside second) const override {
+    return is_surrounded() && !is_beside_bodies(first, second);
+  }
   /// True for a face between two labels around the bodies, or between one and the outside.
   bool is_beside_bodies(const InterfaceTriangle& face) const {
     return is_beside_bodies(face.material, face.other);
@@ -94,6 +99,8 @@ class FeatureSurface : public ReferenceSurface {
     return static_cast<RegionIndex>(body == bodies_.end() ? outside_region : body->second + 1);
   }
   std::size_t sheet_of(Patch patch) const { return sheet_of_patch_[patch]; }
+  /// Size of the cells at a sheet, input units, if it is known: that of the body with the smaller ones.
+  std::optional<double> cell_of(std::size_t sheet) const;
   /// The sheet between two regions of the complex, or none.
   std::optional<std::size_t> sheet_between(RegionIndex a, RegionIndex b) const {
     const auto known = sheets_.find(std::minmax(a, b));
@@ -157,6 +164,8 @@ class FeatureSurface : public ReferenceSurface {
   std::shared_ptr<const MaterialField> field_;
   std::shared_ptr<const ReferenceSurface> surroundings_;
   GivenUpZone given_up_;
+  std::vector<double> cells_;           ///< at each body, input units, or empty
+  std::optional<double> creased_size_;  ///< with surroundings, which are larger than bodies
   Patch no_patch_ = 0;
   /// Items of the trees, until these are built.
   struct Items {

@@ -28,22 +28,24 @@ double patch_cell(const RepairedSurface& surface, const MesherOptions& options, 
   return std::clamp(mean_thickness(surface), std::ldexp(cell, -halvings), cell);
 }
 
-/// How the patches of a body are found.
-PatchOptions patch_options(const MesherInput::Body& body, const MesherOptions& options, double cell) {
-  const double shown = patch_cell(body.surface, options, cell);
+/// How the patches of each body are found.
+/// \param cells at each body, or empty
+PatchOptions patch_options(const MesherInput& input, std::size_t body, const MesherOptions& options,
+                           double cell, const std::vector<double>& cells) {
+  const double shown = cells.empty() ? patch_cell(input.bodies[body].surface, options, cell) : cells[body];
   return {options.feature_angle, CellTuning::Patches::min_area * shown * shown, true};
 }
 
 /// The patches of all bodies.
-std::vector<SurfacePatches> patches_of_bodies(const MesherInput& input, const MesherOptions& options,
-                                              double cell) {
+std::vector<SurfacePatches> patches_of_bodies(const MesherInput& input,
+                                              const std::vector<PatchOptions>& options) {
   constexpr std::size_t max_patches = 0xfffe;  // one more is for faces that lie on no surface
   std::size_t count = 0;
   std::vector<SurfacePatches> patches;
-  for (const MesherInput::Body& body : input.bodies) {
+  for (std::size_t b = 0; b < input.bodies.size(); ++b) {
+    const MesherInput::Body& body = input.bodies[b];
     const RepairedSurface& surface = body.surface;
-    patches.push_back(find_patches(surface.points, surface.triangles, patch_options(body, options, cell),
-                                   surface.groups, body.file));
+    patches.push_back(find_patches(surface.points, surface.triangles, options[b], surface.groups, body.file));
     count += patches.back().count;
     if (count > max_patches)
       throw InputError(
@@ -218,6 +220,11 @@ CreaseCurves away_from(const CreaseCurves& creases, const ProjectionTree& curves
   return without(creases, reach, [&](const Vec3& p) { return curves.any_within(p, reach); });
 }
 
+/// The size of the cells at a body.
+double cell_of(const SurfaceFeatures& features, std::size_t body) {
+  return features.cells.empty() ? features.cell : features.cells[body];
+}
+
 /// Reports patches and creases. Omits creases that are given up, and those at open rims, where the mesh
 /// rounds into the cap of a hole.
 void report_features(const MesherInput& input, const SurfaceFeatures& features, const LostCreases& lost,
@@ -228,10 +235,11 @@ void report_features(const MesherInput& input, const SurfaceFeatures& features, 
     if (patches[b].any() && !input.complex) {
       CreaseCurves creases;
       creases.add(find_creases(surface.points, surface.triangles, patches[b].patches,
-                               CellTuning::Patches::corner_reach * features.cell, patches[b].rough),
+                               CellTuning::Patches::corner_reach * cell_of(features, b), patches[b].rough),
                   surface.points);
       if (surface.closed < surface.triangles.size())
-        creases = away_from(creases, open_rims(surface), CellTuning::Patches::rim_reach * features.cell);
+        creases =
+            away_from(creases, open_rims(surface), CellTuning::Patches::rim_reach * cell_of(features, b));
       if (lost.zone().has(b))
         creases = without(creases, lost.zone().piece(), [&](const Vec3& p) { return lost.contains(p, b); });
       report.creases.add(creases);
@@ -275,16 +283,15 @@ void report_complex_creases(const MesherInput& input, const ComplexPatches& foun
         };
         return is_given_up(regions[s].first) || is_given_up(regions[s].second);
       });
-    if (!lines.empty())
-      creases = away_from(creases, lines, CellTuning::Patches::rim_reach * cell);
+    if (!lines.empty()) creases = away_from(creases, lines, CellTuning::Patches::rim_reach * cell);
     report.creases.add(creases);
   }
 }
 
-/// Drops creases that later bodies or protected labels cover, and creases near `junctions`, curves where three
-/// regions meet, which are accurate to half a cell only.
-void keep_visible(CreaseCurves& creases, const MesherInput& input, const DenseMesh& dense,
-                  double cell, CreaseCurves junctions) {
+/// Drops creases that later bodies or protected labels cover, and creases near `junctions`, curves where
+/// three regions meet, which are accurate to half a cell only.
+void keep_visible(CreaseCurves& creases, const MesherInput& input, const DenseMesh& dense, double cell,
+                  CreaseCurves junctions) {
   const double near = CellTuning::Patches::junction_reach * cell;
   std::vector<ProjectionTree::Item> segments;
   segments.reserve(junctions.segments.size());
@@ -316,11 +323,15 @@ void allow_for_chamfers(double cell, MesherReport& report) {
 
 }  // namespace
 
-SurfaceFeatures find_features(const MesherInput& input, const MesherOptions& options, double cell) {
-  SurfaceFeatures found{patches_of_bodies(input, options, cell), {}, {}, {}, {}, cell};
-  for (const MesherInput::Body& body : input.bodies)
-    found.options.push_back(patch_options(body, options, cell));
+SurfaceFeatures find_features(const MesherInput& input, const MesherOptions& options, double cell,
+                              std::vector<double> cells) {
+  SurfaceFeatures found;
+  for (std::size_t b = 0; b < input.bodies.size(); ++b)
+    found.options.push_back(patch_options(input, b, options, cell, cells));
+  found.bodies = patches_of_bodies(input, found.options);
   found.sheets = patches_of_sheets(input, options, cell);
+  found.cell = cell;
+  found.cells = std::move(cells);
   return found;
 }
 

@@ -19,13 +19,16 @@ struct SurfaceFeatures {
   SheetPatches sheets;                    ///< of the complex, if there is one
   std::optional<ComplexPatches> complex;  ///< likewise; set by settle_features()
   GivenUpZone given_up;                   ///< set by settle_features()
-  double cell = 0;                        ///< edge of a finest cell at the surfaces, input units
+  double cell = 0;                        ///< edge of a finest cell, input units
+  std::vector<double> cells;              ///< at each body, at most `cell`; empty: everywhere the same
 };
 
 /// Finds the patches of bodies and sheets.
-/// \param cell edge of a finest cell at the surfaces, input units; patches that are small for it are merged with neighbours
+/// \param cell edge of a finest cell, input units; patches that are small for it are merged with neighbours
+/// \param cells at each body, if they are smaller there; or empty
 /// \throws InputError for more than 65,534 patches
-SurfaceFeatures find_features(const MesherInput& input, const MesherOptions& options, double cell);
+SurfaceFeatures find_features(const MesherInput& input, const MesherOptions& options, double cell,
+                              std::vector<double> cells = {});
 
 /// True if there are creases, junctions or named groups to fit.
 bool has_features(const MesherInput& input, const SurfaceFeatures& features);

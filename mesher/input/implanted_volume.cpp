@@ -40,7 +40,9 @@ Box3 box_of(const LabelInput& labels) {
   return box;
 }
 
-std::string box_text(const Box3& box) { return "from " + place_text(box.low) + " to " + place_text(box.high); }
+std::string box_text(const Box3& box) {
+  return "from " + place_text(box.low) + " to " + place_text(box.high);
+}
 
 void require_meeting(const LabelInput& labels, const MesherInput::Body& body) {
   const VoxelSpace voxels(labels);
@@ -54,8 +56,8 @@ void require_meeting(const LabelInput& labels, const MesherInput::Body& body) {
     meets &= in_voxels.high[a] > -0.5 && in_voxels.low[a] < labels.size[static_cast<std::size_t>(a)] - 0.5;
   if (!meets)
     throw InputError(body.file, 0,
-                     "'" + body.name + "' extends " + box_text(box) + ", and the volume " + labels.file + " " +
-                         box_text(box_of(labels)) +
+                     "'" + body.name + "' extends " + box_text(box) + ", and the volume " + labels.file +
+                         " " + box_text(box_of(labels)) +
                          ", so that they do not meet; check units and position, and --surface-space");
 }
 
@@ -109,21 +111,22 @@ RegionGrid padded(const RegionGrid& from, const VoxelIndex& size, const Padding&
              old_slice = old_row * static_cast<std::size_t>(inner[1]);
   for (int first = 0; first < size[2]; first += RegionGrid::side) {
     const int last = std::min(first + RegionGrid::side, size[2]);
-    const int low = std::max(first - padding.before[2], 0), high = std::min(last - padding.before[2], inner[2]);
+    const int low = std::max(first - padding.before[2], 0),
+              high = std::min(last - padding.before[2], inner[2]);
     if (low >= high) continue;
     layer.assign(slice * static_cast<std::size_t>(last - first), outside_region);
     old.resize(old_slice * static_cast<std::size_t>(high - low));
     from.read_slices(low, high, old);
     for (int z = low; z < high; ++z)
       for (int y = 0; y < inner[1]; ++y) {
-        const auto source = old.begin() + static_cast<std::ptrdiff_t>(
-                                              old_slice * static_cast<std::size_t>(z - low) +
-                                              old_row * static_cast<std::size_t>(y));
+        const auto source =
+            old.begin() + static_cast<std::ptrdiff_t>(old_slice * static_cast<std::size_t>(z - low) +
+                                                      old_row * static_cast<std::size_t>(y));
         std::copy(source, source + inner[0],
-                  layer.begin() +
-                      static_cast<std::ptrdiff_t>(slice * static_cast<std::size_t>(z + padding.before[2] - first) +
-                                                  row * static_cast<std::size_t>(y + padding.before[1]) +
-                                                  static_cast<std::size_t>(padding.before[0])));
+                  layer.begin() + static_cast<std::ptrdiff_t>(
+                                      slice * static_cast<std::size_t>(z + padding.before[2] - first) +
+                                      row * static_cast<std::size_t>(y + padding.before[1]) +
+                                      static_cast<std::size_t>(padding.before[0])));
       }
     result.write_slices(first, layer);
   }
@@ -148,8 +151,9 @@ void make_room(LabelInput& labels, MesherInput& bodies) {
       "the bodies extend " + box_text(box) + ", and the volume " + box_text(box_of(labels));
   if (labels.image)
     throw InputError(labels.file, 0,
-                     extents + ", which is too little of an image to surround them; enlarge the image, or "
-                               "cut off what is outside");
+                     extents +
+                         ", which is too little of an image to surround them; enlarge the image, or "
+                         "cut off what is outside");
   if (growth > Implants::max_growth)
     throw InputError(labels.file, 0,
                      extents + "; a volume around both would have " + short_number(growth) +
@@ -171,9 +175,10 @@ ImplantedVolume make_implanted_volume(LabelInput labels, MesherInput bodies,
                                       std::vector<MaterialTag> protected_labels) {
   if (!bodies.layers.empty()) throw UsageError("--layer is for surfaces alone; leave it out");
   if (bodies.complex && !bodies.complex->sheets.empty())
-    throw UsageError(bodies.bodies.front().file +
-                     ": walls inside of a body are not possible in a segmented volume; --regions outer leaves "
-                     "them out");
+    throw UsageError(
+        bodies.bodies.front().file +
+        ": walls inside of a body are not possible in a segmented volume; --regions outer leaves "
+        "them out");
   require_distinct(labels, bodies);
   for (const MaterialTag tag : protected_labels)
     if (std::none_of(labels.materials.begin(), labels.materials.end(),

@@ -7,6 +7,7 @@
 
 #include "common/parallel/parallel_sort.h"
 #include "mesher/tuning/cell_tuning.h"
+#include "mesher/tuning/label_tuning.h"
 
 namespace tetwright {
 
@@ -26,11 +27,13 @@ struct CarvedField::Rules {
   std::vector<RegionIndex> of_protected, of_others;  ///< regions of the volume
   std::vector<std::uint8_t> is_protected;            ///< by region of the volume; empty: none is
   std::vector<LeafOrigin> near_bodies;               ///< leaves with distances of bodies, ascending
+  double layer = 0;                                  ///< voxels of the frame
 };
 
 class CarvedField::Sampler final : public FieldSampler {
  public:
-  Sampler(const CarvedField& field, std::unique_ptr<FieldSampler> labels, std::unique_ptr<FieldSampler> bodies)
+  Sampler(const CarvedField& field, std::unique_ptr<FieldSampler> labels,
+          std::unique_ptr<FieldSampler> bodies)
       : FieldSampler(labels->per_voxel(), labels->min_slope()),
         rules_(*field.rules_),
         labels_(std::move(labels)),
@@ -38,50 +41,48 @@ class CarvedField::Sampler final : public FieldSampler {
         first_body_(static_cast<RegionIndex>(field.labels_->regions().size() - 1)),
         band_(static_cast<float>(field.band())),
         per_voxel_(std::ldexp(1, field.refinement())),
+        layer_(rules_.layer * per_voxel_),
+        far_inside_(LabelTuning::Carving::far_share * field.bodies_->band()),
         distances_(field.labels_->regions().size()),
         sheets_(*this) {}
 
   NearestRegion nearest(const Vec3& point) override {
-    const NearestRegion body = bodies_->nearest(point), label = labels_->nearest(point);
-    return nearest_of(body, label, point);
+    const NearestRegion body = bodies_->nearest(point);
+    return nearest_of(body, labels_->nearest(label_place(point, body)), point);
   }
-  NearestRegion nearest_at_voxel(int x, int y, int z) override {
-    const NearestRegion body = bodies_->nearest_at_voxel(x, y, z), label = labels_->nearest_at_voxel(x, y, z);
-    return nearest_of(body, label, per_voxel_ * Vec3(x, y, z));
-  }
+  NearestRegion nearest_at_voxel(int x, int y, int z) override { return nearest(per_voxel_ * Vec3(x, y, z)); }
   void values(const Vec3& point, std::span<const RegionIndex> regions, float* out) override {
-    const bool any_label =
-        std::any_of(regions.begin(), regions.end(), [&](RegionIndex r) { return r <= first_body_; });
-    const NearestRegion label =
-        any_label || !rules_.of_protected.empty() ? labels_->nearest(point) : NearestRegion{};
+    const NearestRegion body = bodies_->nearest(point);
+    const Vec3 place = label_place(point, body);
+    const NearestRegion label = labels_->nearest(place), nearest = nearest_of(body, label, point);
+    const float protection = rules_.of_protected.empty() ? HUGE_VALF : from_protected(point);
     const RegionIndex outside = outside_region;
-    float from_bodies = 0;
-    if (any_label) bodies_->values(point, {&outside, 1}, &from_bodies);
-    for (const RegionIndex r : regions) {
+    float depth;
+    bodies_->values(point, {&outside, 1}, &depth);
+    depth = std::min(depth, protection);
+    const auto value_of = [&](RegionIndex r) {
+      float distances[2];
       if (r > first_body_) {
-        const auto body = static_cast<RegionIndex>(r - first_body_);
-        bodies_->values(point, {&body, 1}, out);
-        if (!rules_.of_protected.empty()) *out = std::max(*out, -from_protected(point));
-      } else {
-        float own = -label.margin;
-        if (r != label.region) {
-          const RegionIndex both[2] = {r, label.region};
-          float distances[2];
-          labels_->values(point, both, distances);
-          own = 0.5f * (distances[0] - distances[1]);
-        }
-        *out = is_protected(r) ? own : carved(own, from_bodies);
+        const auto own = static_cast<RegionIndex>(r - first_body_);
+        bodies_->values(point, {&own, 1}, distances);
+        return std::max(distances[0], -protection);
       }
-      ++out;
-    }
+      if (r == label.region) return depth;
+      const RegionIndex both[2] = {r, label.region};
+      labels_->values(place, both, distances);
+      return depth + (distances[0] - distances[1]);
+    };
+    const float middle = value_of(nearest.region) + nearest.margin;
+    for (const RegionIndex r : regions) *out++ = value_of(r) - middle;
   }
   void values_at_voxel(int x, int y, int z, std::span<const RegionIndex> regions, float* out) override {
     values(per_voxel_ * Vec3(x, y, z), regions, out);
   }
   std::optional<RegionSet> two_nearest(const Vec3& point) override {
-    const NearestRegion label = labels_->nearest(point);
-    if (is_protected(label.region)) return two_nearest_protected(point, label);
     const NearestRegion body = bodies_->nearest(point);
+    const Vec3 place = label_place(point, body);
+    const NearestRegion label = labels_->nearest(place);
+    if (is_protected(label.region)) return two_nearest_protected(point, label);
     std::optional<RegionSet> of_bodies = bodies_->two_nearest(point);
     if (of_bodies && of_bodies->contains(outside_region))
       of_bodies = replaced(*of_bodies, label.region);
@@ -92,9 +93,9 @@ class CarvedField::Sampler final : public FieldSampler {
       // Inside a body, whose nearest interface may be that with a protected label.
       const float distance = from_protected(point);
       if (distance >= std::min(body.margin, band_)) return of_bodies;
-      return pair(static_cast<RegionIndex>(first_body_ + body.region), nearest_protected());
+      return pair(static_cast<RegionIndex>(first_body_ + body.region), nearest_protected_);
     }
-    const std::optional<RegionSet> of_labels = labels_->two_nearest(point);
+    const std::optional<RegionSet> of_labels = labels_->two_nearest(place);
     if (!of_labels || (of_bodies && body.margin < label.margin)) return of_bodies;
     return of_labels;
   }
@@ -109,7 +110,7 @@ class CarvedField::Sampler final : public FieldSampler {
       std::optional<FieldSheet> sheet = of_.bodies_->sheets()->thinnest_sheet(point, reach);
       if (!sheet) return sheet;
       sheet->region = sheet->region == outside_region
-                          ? of_.labels_->nearest(point).region
+                          ? of_.labels_->nearest(of_.label_place(point, of_.bodies_->nearest(point))).region
                           : static_cast<RegionIndex>(of_.first_body_ + sheet->region);
       return sheet;
     }
@@ -118,12 +119,25 @@ class CarvedField::Sampler final : public FieldSampler {
     Sampler& of_;
   };
 
+  /// The point whose label counts: in a layer around bodies, and inside them, that on the outer side of the
+  /// layer, along the normal.
+  /// \param body the nearest region of the bodies at `point`
+  Vec3 label_place(const Vec3& point, const NearestRegion& body) {
+    along_ = Vec3::Zero();
+    const bool inside = body.region != outside_region;
+    if (!rules_.of_protected.empty() || body.margin >= (inside ? far_inside_ : layer_)) return point;
+    const RegionIndex outside = outside_region;
+    double value;
+    Vec3 slope;
+    bodies_->values_and_gradients(point, {&outside, 1}, &value, &slope);
+    const double length = slope.norm();
+    if (!(length > 0) || layer_ + value <= 0) return point;
+    along_ = slope / length;
+    return point - (layer_ + value) * along_;
+  }
+
   bool is_protected(RegionIndex label) const {
     return !rules_.is_protected.empty() && rules_.is_protected[label] != 0;
-  }
-  /// The distance of a label whose distance without bodies is `own`.
-  static float carved(float own, float from_bodies) {
-    return from_bodies > 0 ? from_bodies + std::max(own, 0.0f) : std::max(own, from_bodies);
   }
   static RegionSet pair(RegionIndex a, RegionIndex b) {
     RegionSet both;
@@ -161,81 +175,63 @@ class CarvedField::Sampler final : public FieldSampler {
   /// The signed distance from the protected labels together: half the difference between the smallest
   /// distance of one of them and that of another label. Reads the distances of all labels.
   float from_protected(const Vec3& point) {
-    const auto smallest_of = [&](const std::vector<RegionIndex>& regions, RegionIndex* which) {
+    const auto smallest_of = [&](const std::vector<RegionIndex>& regions, RegionIndex& which) {
       labels_->values(point, regions, distances_.data());
       const auto end = distances_.begin() + static_cast<std::ptrdiff_t>(regions.size());
       const auto smallest = std::min_element(distances_.begin(), end);
-      if (which) *which = regions[static_cast<std::size_t>(smallest - distances_.begin())];
+      which = regions[static_cast<std::size_t>(smallest - distances_.begin())];
       return *smallest;
     };
-    const float others = smallest_of(rules_.of_others, nullptr);
-    return 0.5f * (smallest_of(rules_.of_protected, &nearest_protected_) - others);
+    const float others = smallest_of(rules_.of_others, nearest_other_);
+    return 0.5f * (smallest_of(rules_.of_protected, nearest_protected_) - others);
   }
-  /// The protected label that from_protected() found nearest.
-  RegionIndex nearest_protected() const { return nearest_protected_; }
-
+  /// Values but for a common term.
   void values_and_gradients(const Vec3& point, std::span<const RegionIndex> regions, double* out,
                             Vec3* slopes) override {
-    const RegionIndex label = labels_->nearest(point).region;
+    const Vec3 place = label_place(point, bodies_->nearest(point));
+    const Vec3 along = along_;
+    const RegionIndex label = labels_->nearest(place).region;
+    const Signed protection = protected_distance(point);
     const RegionIndex outside = outside_region;
-    double from_bodies = 0;
-    Vec3 from_bodies_slope;
-    bodies_->values_and_gradients(point, {&outside, 1}, &from_bodies, &from_bodies_slope);
+    Signed depth;
+    bodies_->values_and_gradients(point, {&outside, 1}, &depth.value, &depth.slope);
+    if (protection.value < depth.value) depth = protection;
     for (const RegionIndex r : regions) {
       if (r > first_body_) {
         const auto body = static_cast<RegionIndex>(r - first_body_);
         bodies_->values_and_gradients(point, {&body, 1}, out, slopes);
-        keep_off_protected(point, *out, *slopes);
+        if (-protection.value > *out) *out = -protection.value, *slopes = -protection.slope;
       } else {
-        Vec3 own_slope;
-        const double own = label_distance(point, r, label, own_slope);
-        if (is_protected(r) || (from_bodies <= 0 && own >= from_bodies)) {
-          *out = own;
-          *slopes = own_slope;
-        } else {
-          const bool beside = from_bodies > 0 && own > 0;
-          *out = from_bodies + (beside ? own : 0);
-          *slopes = beside ? Vec3(from_bodies_slope + own_slope) : from_bodies_slope;
+        *out = depth.value;
+        *slopes = depth.slope;
+        if (r != label) {
+          const RegionIndex both[2] = {r, label};
+          double values[2];
+          Vec3 of_labels[2];
+          labels_->values_and_gradients(place, both, values, of_labels);
+          const Vec3 slope = of_labels[0] - of_labels[1];
+          *out += values[0] - values[1];
+          *slopes += slope - slope.dot(along) * along;
         }
       }
       ++out;
       ++slopes;
     }
   }
-  /// The distance of a label without bodies.
-  /// \param nearest the label that contains the point
-  double label_distance(const Vec3& point, RegionIndex region, RegionIndex nearest, Vec3& slope) {
-    RegionIndex other = nearest;
-    if (region == nearest) {
-      if (const auto both = labels_->two_nearest(point))
-        for (const RegionIndex r : *both)
-          if (r != nearest) other = r;
-    }
-    const RegionIndex both[2] = {region, other};
+  struct Signed {
+    double value = HUGE_VAL;
+    Vec3 slope = Vec3::Zero();
+  };
+  /// from_protected() with its gradient; infinite without protected labels.
+  Signed protected_distance(const Vec3& point) {
+    Signed distance;
+    if (rules_.of_protected.empty()) return distance;
+    (void)from_protected(point);
+    const RegionIndex both[2] = {nearest_protected_, nearest_other_};
     double values[2];
     Vec3 slopes[2];
     labels_->values_and_gradients(point, both, values, slopes);
-    if (other == region) {  // no other one is near
-      slope = slopes[0];
-      return values[0];
-    }
-    slope = 0.5 * (slopes[0] - slopes[1]);
-    return 0.5 * (values[0] - values[1]);
-  }
-  /// Ends a body at the protected labels.
-  void keep_off_protected(const Vec3& point, double& value, Vec3& slope) {
-    if (rules_.of_protected.empty() || -from_protected(point) <= value) return;
-    const RegionIndex inside = nearest_protected_;
-    labels_->values(point, rules_.of_others, distances_.data());
-    const auto end = distances_.begin() + static_cast<std::ptrdiff_t>(rules_.of_others.size());
-    const RegionIndex across = rules_.of_others[static_cast<std::size_t>(
-        std::min_element(distances_.begin(), end) - distances_.begin())];
-    const RegionIndex both[2] = {inside, across};
-    double values[2];
-    Vec3 slopes[2];
-    labels_->values_and_gradients(point, both, values, slopes);
-    value = 0.5 * (values[1] - values[0]);
-    slope = 0.5 * (slopes[1] - slopes[0]);
+    return {0.5 * (values[0] - values[1]), 0.5 * (slopes[0] - slopes[1])};
   }
 
   const Rules& rules_;
@@ -243,19 +239,23 @@ class CarvedField::Sampler final : public FieldSampler {
   const RegionIndex first_body_;  ///< the region before the first body's
   const float band_;              ///< lattice units
   const double per_voxel_;        ///< lattice units
+  const double layer_;            ///< around bodies, lattice units
+  const double far_inside_;       ///< from the surfaces, lattice units
+  Vec3 along_ = Vec3::Zero();     ///< of the last label_place(): unit normal, or zero
   std::vector<float> distances_;  ///< workspace of from_protected()
-  RegionIndex nearest_protected_ = outside_region;
+  RegionIndex nearest_protected_ = outside_region, nearest_other_ = outside_region;  ///< of from_protected()
   Sheets sheets_;
 };
 
 std::shared_ptr<const CarvedField> CarvedField::make(std::shared_ptr<const LabelField> labels,
                                                      std::shared_ptr<const MaterialField> bodies,
-                                                     std::vector<std::uint8_t> is_protected) {
+                                                     std::vector<std::uint8_t> is_protected, double layer) {
   auto rules = std::make_shared<Rules>();
   if (std::find(is_protected.begin(), is_protected.end(), 1) == is_protected.end()) is_protected.clear();
   for (std::size_t r = 0; r < is_protected.size(); ++r)
     (is_protected[r] ? rules->of_protected : rules->of_others).push_back(static_cast<RegionIndex>(r));
   rules->is_protected = std::move(is_protected);
+  rules->layer = layer;
   rules->near_bodies = bodies->band_leaves(outside_region);
   return std::shared_ptr<const CarvedField>(
       new CarvedField(std::move(labels), std::move(bodies), std::move(rules)));
@@ -293,12 +293,12 @@ std::vector<MortonKey> CarvedField::interface_voxels() const {
     const double half_diagonal = std::sqrt(0.75) * std::ldexp(1, bodies_->refinement());
     const double per_voxel = std::ldexp(1, bodies_->refinement());
     keys = parallel_collect<MortonKey>(
-        0, keys.size(), CellGrains::elements, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
+        0, keys.size(), CellGrains::elements,
+        [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
           const std::unique_ptr<FieldSampler> sampler = bodies_->sampler();
           for (std::size_t i = begin; i < end; ++i) {
             const auto [x, y, z] = morton_decode(keys[i]);
-            const NearestRegion body =
-                sampler->nearest(per_voxel * (Vec3(x, y, z) + Vec3::Constant(0.5)));
+            const NearestRegion body = sampler->nearest(per_voxel * (Vec3(x, y, z) + Vec3::Constant(0.5)));
             if (body.region == outside_region || body.margin <= half_diagonal) out.push_back(keys[i]);
           }
         });

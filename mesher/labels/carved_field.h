@@ -16,16 +16,22 @@ namespace tetwright {
 /// a body belongs to that body, unless its label is protected; all others have their label. So the sharp
 /// edges of bodies are those of their own level sets, and labels end exactly there.
 ///
-/// Distances of labels are those from their interfaces, half the difference between the label's distance and
-/// the smallest other one, and inside bodies increase with the depth there; so at most one of the two fields
-/// decides at a point, and the second nearest region is the one across the nearest interface.
+/// In a thin layer around bodies labels continue from its outer side along the normals, so that their
+/// interfaces meet bodies at right angles: interfaces that run along a body as closely as a fraction of a
+/// cell would leave slivers there, although they are known to half a voxel only. With protected labels there
+/// is no layer.
+///
+/// The distance of a label exceeds that of the outside of all bodies by what its own distance exceeds the
+/// smallest one of a label. So the difference between a body and the label around it is that of the body and
+/// its outside, and between two labels their own: no interface moves where others are near.
 class CarvedField final : public MaterialField, private WallChanges, private VoxelVolume {
  public:
   /// \param labels, bodies on the same voxels, with the same refinement; `bodies` have no sheets
+  /// \param layer its thickness, voxels of the frame
   /// \param is_protected a flag for each region of `labels`: bodies do not carve it; or empty
   static std::shared_ptr<const CarvedField> make(std::shared_ptr<const LabelField> labels,
                                                  std::shared_ptr<const MaterialField> bodies,
-                                                 std::vector<std::uint8_t> is_protected);
+                                                 std::vector<std::uint8_t> is_protected, double layer);
   ~CarvedField() override;
 
   std::unique_ptr<FieldSampler> sampler() const override;

@@ -8,9 +8,9 @@
 
 #include "common/geometry/box_tree.h"
 #include "common/geometry/surface_tree.h"
-#include "tetwright/resources.h"
 #include "mesher/domain/narrow_band.h"
 #include "mesher/tuning/label_tuning.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 

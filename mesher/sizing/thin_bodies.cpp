@@ -19,8 +19,7 @@ void add_surface(const RepairedSurface& surface, double spacing, int halvings,
     const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
     const int n = std::max(1, static_cast<int>(std::ceil(longest / spacing)));
     for (int i = 0; i <= n; ++i)
-      for (int k = 0; k <= n - i; ++k)
-        regions.push_back({a + (b - a) * i / n + (c - a) * k / n, halvings});
+      for (int k = 0; k <= n - i; ++k) regions.push_back({a + (b - a) * i / n + (c - a) * k / n, halvings});
   }
 }
 
@@ -28,18 +27,21 @@ void add_surface(const RepairedSurface& surface, double spacing, int halvings,
 
 double mean_thickness(const RepairedSurface& surface) { return 2 * std::abs(surface.volume) / surface.area; }
 
-NarrowPatches cells_of_thin_bodies(const MesherInput& bodies, const GridFrame& voxels,
-                                   std::vector<RefinementRegion> asked, int max_depth, double max_tets) {
-  double thinnest = HUGE_VAL;  // cells
-  for (const MesherInput::Body& body : bodies.bodies)
-    thinnest = std::min(thinnest, mean_thickness(body.surface) / voxels.cell_size);
-  const double halvings = std::round(std::log2(CellTuning::Patches::cells_of_body / thinnest));
-  const int depth = static_cast<int>(std::clamp(halvings, 0.0, static_cast<double>(max_depth)));
-  // Cells around a point are halved up to a distance of one of them.
-  if (depth > 0)
-    for (const MesherInput::Body& body : bodies.bodies)
-      add_surface(body.surface, std::ldexp(voxels.cell_size, 1 - depth), depth, asked);
-  return cells_around(asked, voxels, max_depth, max_tets);
+BodySizes cells_of_thin_bodies(const MesherInput& bodies, const GridFrame& voxels,
+                               std::vector<RefinementRegion> asked, int max_depth, double max_tets) {
+  std::vector<int> depths;
+  for (const MesherInput::Body& body : bodies.bodies) {
+    const double thickness = mean_thickness(body.surface) / voxels.cell_size;
+    const double halvings = std::round(std::log2(CellTuning::Patches::cells_of_body / thickness));
+    depths.push_back(static_cast<int>(std::clamp(halvings, 0.0, static_cast<double>(max_depth))));
+    // Cells around a point are halved up to a distance of one of them.
+    if (depths.back() > 0)
+      add_surface(body.surface, std::ldexp(voxels.cell_size, 1 - depths.back()), depths.back(), asked);
+  }
+  BodySizes result{cells_around(asked, voxels, max_depth, max_tets), {}};
+  for (const int depth : depths)
+    result.sizes.push_back(std::ldexp(voxels.cell_size, -std::min(depth, result.cells.finer.refinement)));
+  return result;
 }
 
 }  // namespace tetwright

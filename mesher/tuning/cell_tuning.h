@@ -162,9 +162,9 @@ struct CellTuning {
     /// within the tolerance. No face shows a part this small, while patches that a thin body deserves are
     /// larger.
     static constexpr double sliver = 0.1;
-    /// Cells for the mean thickness of the thinnest body in a volume, that is twice its volume by its area: two
-    /// across a plate, four across a rod.
-    static constexpr double cells_of_body = 2;
+    /// Cells for the mean thickness of a body in a volume, which is twice its volume by its area: four across
+    /// a plate, eight across a rod. With half as many, edges that cross interfaces of labels are not exact.
+    static constexpr double cells_of_body = 4;
     static constexpr double corner_reach = 1;  ///< cells: turns within this distance are not corners
     /// Distance, cells, from a curve where three regions meet within which creases are not reported, and max
     /// distance of a reported crease from a visible surface: such curves are accurate to half a cell only.

@@ -84,6 +84,9 @@ struct LabelTuning {
     /// Samples along each edge of a voxel that a surface passes: errors of single voxels of up to 1/8 are
     /// independent, so that those of volumes are far below the 1 % that is compared.
     static constexpr int samples = 4;
+    /// Thickness of the layer in which interfaces of labels turn towards bodies: in cells of the coarsest
+    /// body, and at most in voxels.
+    static constexpr double layer = 1, max_layer = 0.25;
     /// Share of the band from which on a point is far from surfaces.
     static constexpr double far_share = 0.98;
   };

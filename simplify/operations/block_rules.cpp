@@ -31,7 +31,8 @@ void BlockRules::project_onto(const SurfaceProjection& surfaces, double diagonal
   surface.projection = &surfaces;
   surface.max_feature_distance.reset();
   if (!surfaces.has_patches() && !surfaces.has_sheets()) return;
-  const double distance = Features::max_segment_share * diagonal;
+  const double distance =
+      Features::max_segment_share * std::min(diagonal, surfaces.creased_size().value_or(diagonal));
   surface.max_feature_distance = std::min(distance, deviation.tolerance.value_or(distance));
 }
 

@@ -7,9 +7,9 @@
 #include <set>
 
 #include "common/random.h"
+#include "mesher/body_field.h"
 #include "mesher/labels/carved_field.h"
 #include "mesher/level_sets/level_set_field.h"
-#include "mesher/body_field.h"
 #include "tests/mesher/checked_labels.h"
 #include "tests/mesher/test_surfaces.h"
 #include "tetwright/error.h"
@@ -17,9 +17,7 @@
 namespace tetwright::implanted_volume_test {
 namespace {
 
-Eigen::Matrix3d turn() {
-  return (Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized())).toRotationMatrix();
-}
+Eigen::Matrix3d turn() { return (Eigen::AngleAxisd(0.4, Vec3(1, 2, 3).normalized())).toRotationMatrix(); }
 
 TriangleMesh turned_box(const Vec3& centre, const Vec3& half, const Eigen::Matrix3d& axes = turn()) {
   TriangleMesh box = make_box(-half, half);
@@ -51,8 +49,7 @@ std::map<MaterialTag, double> volumes(const TetMesh& mesh) {
   std::map<MaterialTag, double> all;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     const auto& [a, b, c, d] = mesh.tets[t];
-    all[mesh.materials[t]] +=
-        tet_volume(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);
+    all[mesh.materials[t]] += tet_volume(mesh.points[a], mesh.points[b], mesh.points[c], mesh.points[d]);
   }
   return all;
 }
@@ -100,8 +97,7 @@ TEST(ImplantedVolume, BoxThroughThreeLabelsKeepsItsEdges) {
 }
 
 TEST(ImplantedVolume, FacesOnTheBorderKeepTheirPatches) {
-  const LabelInput labels =
-      make_labels({20, 18, 16}, [](int x, int, int) { return x < 9 ? 1 : 2; });
+  const LabelInput labels = make_labels({20, 18, 16}, [](int x, int, int) { return x < 9 ? 1 : 2; });
   const Vec3 centre(9.2, 8.7, 7.4), half(2.6, 3.1, 2.2);
   const ImplantedVolume volume = make_implanted_volume(labels, body(turned_box(centre, half)));
   EXPECT_TRUE(volume.bodies.findings.empty());
@@ -129,7 +125,8 @@ TEST(ImplantedVolume, FacesOnTheBorderKeepTheirPatches) {
 TEST(ImplantedVolume, BodiesThatLeaveTheVolumeAreWhole) {
   const LabelInput labels = layers(16);
   const Vec3 centre(7.5, 7.5, 16), half(1.7, 1.6, 7);
-  const ImplantedVolume volume = make_implanted_volume(labels, body(turned_box(centre, half, Eigen::Matrix3d::Identity())));
+  const ImplantedVolume volume =
+      make_implanted_volume(labels, body(turned_box(centre, half, Eigen::Matrix3d::Identity())));
   ASSERT_EQ(volume.bodies.findings.size(), 1u);
   EXPECT_EQ(volume.bodies.findings[0].code, DiagnosticCode::volume_enlarged);
   EXPECT_EQ(volume.labels.size, (VoxelIndex{16, 16, 32}));
@@ -144,7 +141,8 @@ TEST(ImplantedVolume, RoomIsAddedBeforeTheFirstVoxels) {
       make_implanted_volume(labels, body(turned_box(Vec3(-1, 5.5, 5.5), Vec3(4, 1, 1))));
   const int added = volume.labels.size[0] - 12;
   EXPECT_GT(added, 6);
-  for (int x = 0; x < 12; ++x) EXPECT_EQ(volume.labels.regions.at(x + added, 5, 6), labels.regions.at(x, 5, 6));
+  for (int x = 0; x < 12; ++x)
+    EXPECT_EQ(volume.labels.regions.at(x + added, 5, 6), labels.regions.at(x, 5, 6));
   EXPECT_LT((volume.labels.origin - Vec3(-added, 0, 0)).norm(), 1e-12);
 }
 
@@ -160,9 +158,9 @@ TEST(ImplantedVolume, ProtectedLabelsAreNotCarved) {
 
 TEST(ImplantedVolume, BodiesThatTouchShareTheirFaces) {
   const LabelInput labels = layers(24);
-  const MesherInput two = make_mesher_input(
-      {{"left", 8, make_box(Vec3(6.2, 8.1, 7.3), Vec3(11.4, 14.6, 15.9)), "left.stl"},
-       {"right", 9, make_box(Vec3(11.4, 8.1, 7.3), Vec3(16.7, 14.6, 15.9)), "right.stl"}});
+  const MesherInput two =
+      make_mesher_input({{"left", 8, make_box(Vec3(6.2, 8.1, 7.3), Vec3(11.4, 14.6, 15.9)), "left.stl"},
+                         {"right", 9, make_box(Vec3(11.4, 8.1, 7.3), Vec3(16.7, 14.6, 15.9)), "right.stl"}});
   ASSERT_TRUE(two.complex);
   const DenseMesh dense = checked(make_implanted_volume(labels, two), 1);
   double shared = 0;
@@ -180,7 +178,8 @@ TEST(ImplantedVolume, BodiesThatTouchShareTheirFaces) {
 
 TEST(ImplantedVolume, NeedsBodiesThatFit) {
   const LabelInput labels = layers(12);
-  const auto make = [&](const Vec3& at, const std::string& name, MaterialTag tag, std::vector<MaterialTag> kept) {
+  const auto make = [&](const Vec3& at, const std::string& name, MaterialTag tag,
+                        std::vector<MaterialTag> kept) {
     return make_implanted_volume(labels, body(turned_box(at, Vec3(2, 2, 2)), name, tag), std::move(kept));
   };
   EXPECT_THROW(make(Vec3(40, 5, 5), "implant", 9, {}), InputError);
@@ -188,8 +187,8 @@ TEST(ImplantedVolume, NeedsBodiesThatFit) {
   EXPECT_THROW(make(Vec3(5, 5, 5), "implant", 2, {}), UsageError);
   EXPECT_THROW(make(Vec3(5, 5, 5), "implant", 9, {7}), UsageError);
   // So far outside that the units must be wrong.
-  EXPECT_THROW(make_implanted_volume(labels, body(turned_box(Vec3(100, 5, 5), Vec3(99, 2, 2),
-                                                             Eigen::Matrix3d::Identity()))),
+  EXPECT_THROW(make_implanted_volume(
+                   labels, body(turned_box(Vec3(100, 5, 5), Vec3(99, 2, 2), Eigen::Matrix3d::Identity()))),
                InputError);
   try {
     make(Vec3(40, 5, 5), "implant", 9, {});
@@ -229,8 +228,8 @@ void expect_consistent(const MaterialField& field, std::uint64_t seed) {
 
 struct CarvedFieldFixture : ::testing::Test {
   static std::shared_ptr<const CarvedField> make(std::vector<std::uint8_t> kept, double cell = 1) {
-    const ImplantedVolume volume = make_implanted_volume(
-        layers(16), body(turned_box(Vec3(7.6, 7.2, 7.4), Vec3(2.1, 2.4, 3.9))));
+    const ImplantedVolume volume =
+        make_implanted_volume(layers(16), body(turned_box(Vec3(7.6, 7.2, 7.4), Vec3(2.1, 2.4, 3.9))));
     const GridFrame frame = label_frame(volume.labels, cell, false);
     const BodyField bodies = build_field(volume.bodies, frame, false, {}, {}, {}, nullptr);
     return CarvedField::make(LabelField::make(volume.labels, frame, false, nullptr), bodies.field,

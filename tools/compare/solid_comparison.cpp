@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <cstdio>
+#include <limits>
 #include <unordered_map>
 #include <utility>
 
@@ -168,9 +168,8 @@ SolidComparison compare(const LabelMaterial& label, double voxel_volume, const S
 double expected_volume(const LabelMaterial& label) {
   const auto voxels = static_cast<double>(label.voxels);
   // Voxels that merging took off or added count whole.
-  const double whole = label.image_volume
-                           ? *label.image_volume + voxels - static_cast<double>(label.voxels_in_file)
-                           : voxels;
+  const double whole =
+      label.image_volume ? *label.image_volume + voxels - static_cast<double>(label.voxels_in_file) : voxels;
   return whole - label.carved.value_or(0);
 }
 

@@ -189,7 +189,8 @@ DenseMesh mesh_input(ImplantedVolume& volume, PrepareRun& run) {
   const CellOptions& cells = run.options.cells;
   const TargetOptions& target = run.options.target;
   if (run.options.bricks.use == BrickOptions::Use::always || !run.options.bricks.scratch.empty())
-    throw UsageError("--bricks and --scratch do not work with surfaces in a segmented volume; leave them out");
+    throw UsageError(
+        "--bricks and --scratch do not work with surfaces in a segmented volume; leave them out");
   if (target.tolerance && run.task == Task::mesh)
     throw UsageError("--tolerance of 'mesh' is for surfaces alone; leave it out");
   MesherOptions options = common_options(run);

@@ -74,12 +74,11 @@ void find_changed_solids(const TetMesh& mesh, PrepareRun& run) {
   const PrepareOptions& options = run.options;
   PrepareReport& report = run.report;
   if (!report.mesher) return;
-  if (const std::optional<VolumeReport>& volume = report.volume)
-  {
+  if (const std::optional<VolumeReport>& volume = report.volume) {
     const bool outside_is_known = !options.cells.keep_outside && !report.mesher->carved;
-    report.solids = compare_labels(
-        volume->labels, outside_is_known ? std::optional(volume->outside_parts) : std::nullopt,
-        std::abs(volume->directions.determinant()), mesh);
+    report.solids =
+        compare_labels(volume->labels, outside_is_known ? std::optional(volume->outside_parts) : std::nullopt,
+                       std::abs(volume->directions.determinant()), mesh);
     const std::vector<SolidComparison> bodies = compare_solids(report.mesher->expected, mesh);
     report.solids.insert(report.solids.end(), bodies.begin(), bodies.end());
   } else

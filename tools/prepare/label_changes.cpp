@@ -95,7 +95,9 @@ void find_changed_contacts(const TetMesh& mesh, PrepareRun& run) {
   std::set<MaterialOrOutside> meshed{MaterialOrOutside()};
   for (const LabelMaterial& m : volume.labels) meshed.insert(m.tag);
   // Surfaces in a volume touch what is around them.
-  const auto is_body = [&](const MaterialOrOutside& m) { return run.report.mesher->carved && !meshed.contains(m); };
+  const auto is_body = [&](const MaterialOrOutside& m) {
+    return run.report.mesher->carved && !meshed.contains(m);
+  };
   std::map<Pair, Vec3> touching;  // in the mesh
   for (const InterfaceTriangle& t : mesh.interfaces) {
     // The volume ends there.
