@@ -124,8 +124,8 @@ void check_probabilities(const ImageVolume& image, const std::string& file, cons
     throw InputError(file, 0,
                      "the values of '" + choice.names[c] + "' are from " + text_of(range.low) + " to " +
                          text_of(range.high) +
-                         ", and probabilities are from 0 to 1; say with --iso or --outside-probability from "
-                         "which value on a point is inside");
+                         ", and probabilities are from 0 to 1; say with --iso V from which value on a point is "
+                         "inside");
   }
 }
 

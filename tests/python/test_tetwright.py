@@ -89,6 +89,9 @@ def test_images():
     assert len(tetwright.mesh(inside, iso="auto").tets) > 0
     maps = np.stack([1 / (1 + np.exp(-inside - 3)), np.zeros_like(inside)], axis=3)
     assert len(tetwright.mesh(maps, outside_probability=0.5, smooth=0.5).tets) > 0
+    for probability in (-0.1, 1.5):
+        with pytest.raises(tetwright.UsageError, match=str(probability)):
+            tetwright.mesh(maps, outside_probability=probability)
     with pytest.raises(tetwright.InputError, match="--iso"):
         tetwright.mesh(inside)
     with pytest.raises(tetwright.Error, match="from"):

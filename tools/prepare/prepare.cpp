@@ -223,6 +223,9 @@ void check_options(Task task, const PrepareOptions& options) {
   }
   if (target.tolerance && options.schedule.kind == Schedule::paper)
     throw UsageError("--schedule paper does not bound distances; leave out --tolerance, or --schedule");
+  if (const std::optional<double>& p = options.images.outside_probability; p && !(*p >= 0 && *p <= 1))
+    throw UsageError("--outside-probability " + short_number(*p) +
+                     " is no probability; give a number from 0 to 1 (for other values --iso)");
   check_value_options(task, options.values);
   if (options.bricks.use == BrickOptions::Use::always) check_bricks(task, options);
   if (options.bricks.use == BrickOptions::Use::never && !options.bricks.scratch.empty())

@@ -99,6 +99,11 @@ TEST_F(Images, ProbabilityMapsAreMaterials) {
   const double half = volume("left");
   EXPECT_EQ(prepare(both + " --outside-probability 0.2").status, 0);
   EXPECT_GT(volume("left"), 1.1 * half);
+  for (const char* p : {"-0.1", "1.5", "nan"}) {
+    const Answer none = prepare(both + " --outside-probability=" + p);
+    EXPECT_EQ(none.status, 2);
+    EXPECT_NE(none.err.find(p), std::string::npos) << none.err;
+  }
   // Distances are no probabilities.
   const std::string distances = image("a", ball(4, 5)) + " " + image("b", ball(4, 14));
   const Answer refused = prepare(distances);

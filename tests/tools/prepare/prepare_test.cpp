@@ -264,6 +264,9 @@ TEST(Prepare, RefusesOptionsThatDoNotGoTogether) {
   PrepareOptions both = small_target();
   both.cells.size = 1;
   EXPECT_NE(message(both).find("not both"), std::string::npos);
+  PrepareOptions probability = small_target();
+  probability.images.outside_probability = 2;
+  EXPECT_NE(message(probability).find("--outside-probability 2 "), std::string::npos);
   EXPECT_NE(error_of<UsageError>([] { (void)prepare({}, small_target()); }).find("no input"),
             std::string::npos);
 }

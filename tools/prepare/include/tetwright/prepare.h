@@ -227,7 +227,7 @@ struct LabelOptions {
 struct ImageOptions {
   /// Thresholds; one without a name is called like the input.
   std::vector<IsoValue> isos;
-  /// Points where no channel, or no image of several, exceeds this are outside. std::nullopt: images are
+  /// From 0 to 1: points where no channel, or no image of several, exceeds this are outside. std::nullopt: images are
   /// probability maps, and the outside has what they lack to 1.
   std::optional<double> outside_probability;
   std::optional<double> smoothing;  ///< standard deviation, voxels
