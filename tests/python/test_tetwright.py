@@ -136,7 +136,7 @@ def test_values_of_images_are_those_of_the_program(tmp_path):
     assert (tmp_path / "python.inp").read_bytes() == (tmp_path / "program.inp").read_bytes()
     assert (tmp_path / "python_bins.csv").read_text() == (tmp_path / "program_bins.csv").read_text()
     assert set(mesh.fields) == {"gray", "gray_min", "gray_max", "gray_bin"} and set(mesh.point_fields) == {"gray"}
-    assert [b["name"] for b in mesh.stats["bins"]["each"]][0] == "label_1_001"
+    assert [b["name"] for b in mesh.stats["bins"][0]["each"]][0] == "label_1_001"
     # On a mesh from elsewhere, by arrays, files and images of nibabel, and a mask.
     centres = mesh.points[mesh.tets].mean(axis=1)
     expected = 10 * (centres[:, 0] - 1) / 2 + 0.5

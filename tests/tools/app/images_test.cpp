@@ -112,6 +112,10 @@ TEST_F(Images, ProbabilityMapsAreMaterials) {
   EXPECT_EQ(prepare(distances + " --iso 0").status, 0);
   EXPECT_NEAR(volume("a"), ball_volume(4), 0.06 * ball_volume(4));
   EXPECT_EQ(prepare(distances + " --iso a=0 --iso b=0").status, 2);
+  const Answer same =
+      prepare("--material a=" + path("a.nhdr") + " --material a=" + path("b.nhdr") + " --iso 0");
+  EXPECT_EQ(same.status, 2);
+  EXPECT_NE(same.err.find("b.nhdr are two images called 'a'"), std::string::npos) << same.err;
 }
 
 TEST_F(Images, SmoothingIsAsked) {
