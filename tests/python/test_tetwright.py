@@ -155,6 +155,10 @@ def test_values_of_images_are_those_of_the_program(tmp_path):
         tetwright.values(arrays, {"g": gray}, origin=(500, 0, 0))
     with pytest.raises(tetwright.UsageError, match="give a dict from names of fields to images"):
         tetwright.values(arrays, gray)
+    both = tetwright.values(arrays, {"a": gray, "b": gray}, bins={"a": 2, "b": [50.0]}, affine=affine)
+    assert {"a_bin", "b_bin"} < set(both.fields) and [b["values"] for b in both.stats["bins"]] == ["a", "b"]
+    with pytest.raises(tetwright.UsageError, match="only one is possible"):
+        tetwright.values(arrays, {"a": gray, "b": gray}, bins={"a": 2, "b": 2}, modulus={"a": [1, 1], "b": [1, 1]})
 
 
 def test_bricks_give_the_bytes_of_the_program(tmp_path):

@@ -251,9 +251,11 @@ LabelVolume join_masks(std::vector<Input>& volumes, LabelChoice& choice, Prepare
       std::map<MaterialTag, LabelMask> added;
       for (const NamedMask& mask : of_layers[l]) {
         const std::string name = names.add(mask.name);
-        const auto [same, first_with_name] = input_of_name.emplace(printable_name(mask.name), &input);
-        if (!first_with_name && same->second != &input)
-          throw_same_name("masks", same->first, same->second->name, file);
+        // Segments of a file cannot be named by options; a number makes their names unique.
+        if (!layered) {
+          const auto [same, first_with_name] = input_of_name.emplace(printable_name(mask.name), &input);
+          if (!first_with_name) throw_same_name("masks", same->first, same->second->name, file);
+        }
         if (printable_name(mask.name) == "outside")
           throw UsageError(
               file +

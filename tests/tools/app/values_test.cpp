@@ -332,6 +332,8 @@ TEST_F(Values, WrongCallsAreRefused) {
   expect_refused(values + "--bins hu=3 --modulus hu=1", 2, {"is not A,B or A,B,S,T"});
   expect_refused(values + "--bins hu=3 --min-modulus 1", 2, {"--min-modulus is for --modulus"});
   expect_refused(values + "--bins hu=3 --modulus hu=-1,1", 2, {"--modulus", "'-1'"});
+  expect_refused(values + "--bins hu=3 --modulus hu=1,1 --modulus ct=1,1", 2,
+                 {"--modulus", "only one is possible in a call"});
   expect_refused(values + "--bins hu=3 --bins hu=2", 2, {"--bins hu was given twice"});
   expect_refused(values + "--values hu=" + path("ct.nrrd"), 2,
                  {"ramp.nrrd and ", "ct.nrrd are two images called 'hu'", " hu_2="});
