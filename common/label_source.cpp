@@ -154,13 +154,17 @@ std::vector<std::vector<Value>> read_whole(const LabelSource& source, std::size_
   for (std::vector<Value>& values : out) values.resize(grid.voxels());
   boxes.for_each(0, grid.size[2], [&](const VoxelIndex& low, const VoxelIndex& high, unsigned /*worker*/) {
     const std::size_t n = label_count(low, high);
-    std::vector<Value> box(slices ? 0 : n);
+    if (slices) {
+      std::vector<std::span<Value>> parts;
+      for (std::vector<Value>& values : out)
+        parts.push_back(std::span(values).subspan(label_index(grid.size, 0, 0, low[2]), n));
+      read(low, high, 0, parts);
+      return;
+    }
+    std::vector<Value> box(n);
     for (std::size_t array = 0; array < arrays; ++array) {
-      if (slices) {
-        read(low, high, array, std::span(out[array]).subspan(label_index(grid.size, 0, 0, low[2]), n));
-        continue;
-      }
-      read(low, high, array, box);
+      const std::span<Value> part(box);
+      read(low, high, array, {&part, 1});
       auto from = box.begin();
       for (int z = low[2]; z < high[2]; ++z)
         for (int y = low[1]; y < high[1]; ++y, from += high[0] - low[0])
@@ -177,11 +181,12 @@ template std::vector<std::vector<float>> read_whole(const LabelSource&, std::siz
 
 LabelVolume read_all(const LabelSource& source, const std::string& file) {
   LabelVolume volume{source.grid(), {}};
-  volume.labels = std::move(
-      read_whole<MaterialTag>(source, 1, file, "labels",
-                              [&](const VoxelIndex& low, const VoxelIndex& high, std::size_t /*array*/,
-                                  std::span<MaterialTag> out) { source.read(low, high, out); })
-          .front());
+  volume.labels =
+      std::move(read_whole<MaterialTag>(
+                    source, 1, file, "labels",
+                    [&](const VoxelIndex& low, const VoxelIndex& high, std::size_t /*first*/,
+                        std::span<const std::span<MaterialTag>> out) { source.read(low, high, out.front()); })
+                    .front());
   return volume;
 }
 

@@ -69,15 +69,21 @@ double process_limit(int resource) {
   return static_cast<double>(limit.rlim_cur);
 }
 
-thread_local double thread_memory_limit = no_limit;
+thread_local double thread_memory_limit = no_limit, thread_held_memory = 0;
 
 }  // namespace
 
 double available_memory(const std::filesystem::path& root) {
   const double machine =
       static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  return std::min({machine, control_group_limit(root), process_limit(RLIMIT_AS), process_limit(RLIMIT_DATA),
-                   thread_memory_limit});
+  const double all = std::min({machine, control_group_limit(root), process_limit(RLIMIT_AS),
+                               process_limit(RLIMIT_DATA), thread_memory_limit});
+  return std::max(0.0, all - thread_held_memory);
+}
+
+void HeldMemory::add(double bytes) {
+  bytes_ += bytes;
+  thread_held_memory += bytes;
 }
 
 MemoryLimit::MemoryLimit(double bytes) : before_(thread_memory_limit) {
@@ -91,7 +97,11 @@ void require_memory(double bytes, const std::string& what, const std::string& re
   const double available = available_memory();
   if (bytes <= available) return;
   throw OutputError(what + " would take about " + short_number(bytes / gigabyte) + " GB of memory, but " +
-                    short_number(available / gigabyte) + " GB are available; " + remedy);
+                    short_number(available / gigabyte) + " GB are available" +
+                    (thread_held_memory > 0 ? " beside the " + short_number(thread_held_memory / gigabyte) +
+                                                  " GB that images and masks take"
+                                            : "") +
+                    "; " + remedy);
 }
 
 }  // namespace tetwright

@@ -11,13 +11,14 @@
 
 namespace tetwright {
 
-/// Reads the values of a box of voxels, for one of the arrays that read_whole() returns.
+/// Reads the values of a box of voxels for arrays that read_whole() returns: `first` and those that follow.
 template <class Value>
-using BoxReader = std::function<void(const VoxelIndex& low, const VoxelIndex& high, std::size_t array,
-                                     std::span<Value> out)>;
+using BoxReader = std::function<void(const VoxelIndex& low, const VoxelIndex& high, std::size_t first,
+                                     std::span<const std::span<Value>> out)>;
 
 /// Reads all voxels of a source into arrays, decoding blocks in parallel. `Value` is MaterialTag or float.
-/// \param arrays at least 1; all of a box are read one after the other
+/// \param arrays at least 1; all of a box are read at once if the source stores slices, else one after the
+///   other
 /// \param file file name for messages
 /// \param what the values for messages: "labels"
 /// \param read is called concurrently

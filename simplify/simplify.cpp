@@ -227,7 +227,7 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
     if (!tuned) return;
     engine.keep_surface(options.surface, options.tolerance > 0);
     engine.throw_if_stopped();
-    // From here on the mesh is changed, so time is asked for in the loop only.
+    // If time ends within this, the mesh is unchanged. After it, time is asked for in the loop only.
     if (!is_bounded(options) && options.tolerance == 0 && !options.original)
       merge_in_bulk(engine, static_cast<double>(options.target_tets), options.seed);
     engine.compact();

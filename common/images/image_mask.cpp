@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "common/parallel/parallel_sort.h"
 #include "tetwright/image_values.h"
@@ -70,6 +72,41 @@ ImageMask ImageMask::own_label(const LabelGrid& image, const LabelVolume& labels
     result.groups_[voxel] = result.group_of_.at(label);
   });
   return result;
+}
+
+CountedVoxels counted_voxels(const ImageVolume& image, const ImageMask& mask,
+                             const std::vector<MaterialTag>& materials, std::size_t channel) {
+  std::vector<std::uint32_t> groups;
+  if (mask.depends_on_material())
+    for (const MaterialTag material : materials)
+      if (const std::uint32_t group = mask.group_for(material); group != 0) groups.push_back(group);
+  std::sort(groups.begin(), groups.end());
+  const bool any = !mask.depends_on_material() || materials.empty();
+  const auto counts = [&](std::size_t voxel) {
+    const std::uint32_t group = mask.group(voxel);
+    return group != 0 && (any || std::binary_search(groups.begin(), groups.end(), group));
+  };
+  const std::vector<float>& values = image.channels[channel];
+  constexpr std::size_t grain = std::size_t{1} << 18;
+  const std::vector<CountedVoxels> parts = parallel_collect<CountedVoxels>(
+      0, values.size(), grain, [&](std::size_t begin, std::size_t end, std::vector<CountedVoxels>& out) {
+        CountedVoxels part{0, std::numeric_limits<double>::infinity(),
+                           -std::numeric_limits<double>::infinity()};
+        for (std::size_t i = begin; i < end; ++i) {
+          if (!std::isfinite(values[i]) || !counts(i)) continue;
+          ++part.count;
+          part.lowest = std::min(part.lowest, static_cast<double>(values[i]));
+          part.highest = std::max(part.highest, static_cast<double>(values[i]));
+        }
+        if (part.count > 0) out.push_back(part);
+      });
+  CountedVoxels all = parts.empty() ? CountedVoxels() : parts.front();
+  for (std::size_t i = 1; i < parts.size(); ++i) {
+    all.count += parts[i].count;
+    all.lowest = std::min(all.lowest, parts[i].lowest);
+    all.highest = std::max(all.highest, parts[i].highest);
+  }
+  return all;
 }
 
 }  // namespace tetwright

@@ -115,10 +115,31 @@ TetBins bin_tets(const TetMesh& mesh, const std::string& field, const std::vecto
   return result;
 }
 
+void name_apart(const TetMesh& mesh, std::span<TetBins> divisions) {
+  if (divisions.size() < 2) return;
+  UniqueNames names([](const std::string& name) { return name; });
+  for (const TetBins& bins : divisions)
+    for (const ValueBin& bin : bins.bins)
+      if (const std::string name = material_name(mesh, bin.material); !names.has(name)) (void)names.add(name);
+  for (TetBins& bins : divisions)
+    for (ValueBin& bin : bins.bins)
+      bin.name = names.add(numbered(material_name(mesh, bin.material) + "_" + bins.field, bin.number));
+}
+
+std::size_t leading_division(std::span<const TetBins> divisions) {
+  const auto with_moduli = std::find_if(divisions.begin(), divisions.end(),
+                                        [](const TetBins& bins) { return bins.poisson.has_value(); });
+  return with_moduli == divisions.end() ? 0 : static_cast<std::size_t>(with_moduli - divisions.begin());
+}
+
+double modulus_of(const ModulusLaw& law, double value) {
+  const double calibrated = std::max(0.0, law.scale * value + law.offset);
+  return rounded(std::max(law.minimum, law.factor * std::pow(calibrated, law.exponent)));
+}
+
 void set_moduli(const ModulusLaw& law, TetBins& bins) {
   for (ValueBin& bin : bins.bins) {
-    const double calibrated = std::max(0.0, law.scale * bin.mean + law.offset);
-    const double modulus = rounded(std::max(law.minimum, law.factor * std::pow(calibrated, law.exponent)));
+    const double modulus = modulus_of(law, bin.mean);
     if (!(modulus > 0) || !std::isfinite(modulus))
       throw UsageError("--modulus " + bins.field + ": the bin " + bin.name + " with the mean " +
                        short_number(bin.mean) + " gets the modulus " + short_number(modulus) +
@@ -136,36 +157,39 @@ MeshField field_of_bins(const TetBins& bins) {
   return field;
 }
 
-std::string table_of_bins(const TetMesh& mesh, const TetBins& bins) {
+std::string table_of_bins(const TetMesh& mesh, std::span<const TetBins> divisions) {
   const auto quoted = [](const std::string& name) {
     if (name.find_first_of(",\"\n") == std::string::npos) return name;
     std::string out = "\"";
     for (const char c : name) out += c == '"' ? std::string("\"\"") : std::string(1, c);
     return out + "\"";
   };
-  std::string out = "name,material,bin,low,high,tets,volume,mean";
-  out += bins.poisson ? ",modulus,poisson\n" : "\n";
-  for (const ValueBin& bin : bins.bins) {
-    out += quoted(bin.name) + "," + quoted(material_name(mesh, bin.material)) + ",";
-    append_number(out, bin.number);
-    for (const double x : {bin.low, bin.high}) {
-      out += ',';
-      if (std::isfinite(x)) append_number(out, x);
-    }
+  const bool several = divisions.size() > 1;
+  const bool moduli = std::any_of(divisions.begin(), divisions.end(),
+                                  [](const TetBins& bins) { return bins.poisson.has_value(); });
+  std::string out = several ? "name,values,material,bin,low,high,tets,volume,mean"
+                            : "name,material,bin,low,high,tets,volume,mean";
+  out += moduli ? ",modulus,poisson\n" : "\n";
+  const auto add = [&](bool there, double x) {
     out += ',';
-    append_number(out, bin.tets);
-    for (const double x : {bin.volume, bin.mean}) {
+    if (there) append_number(out, x);
+  };
+  for (const TetBins& bins : divisions)
+    for (const ValueBin& bin : bins.bins) {
+      out += quoted(bin.name) + ",";
+      if (several) out += quoted(bins.field) + ",";
+      out += quoted(material_name(mesh, bin.material)) + ",";
+      append_number(out, bin.number);
+      for (const double x : {bin.low, bin.high}) add(std::isfinite(x), x);
       out += ',';
-      append_number(out, x);
+      append_number(out, bin.tets);
+      for (const double x : {bin.volume, bin.mean}) add(true, x);
+      if (moduli) {
+        add(bin.modulus.has_value(), bin.modulus.value_or(0));
+        add(bins.poisson.has_value(), bins.poisson.value_or(0));
+      }
+      out += '\n';
     }
-    if (bins.poisson) {
-      out += ',';
-      append_number(out, bin.modulus.value_or(0));
-      out += ',';
-      append_number(out, *bins.poisson);
-    }
-    out += '\n';
-  }
   return out;
 }
 

@@ -121,11 +121,12 @@ void check_probabilities(const ImageVolume& image, const std::string& file, cons
   for (std::size_t c = 0; c < image.channels.size(); ++c) {
     const Range range = range_of(image.channels[c]);
     if (range.low >= -off && range.high <= 1 + off) continue;
-    throw InputError(file, 0,
-                     "the values of '" + choice.names[c] + "' are from " + text_of(range.low) + " to " +
-                         text_of(range.high) +
-                         ", and probabilities are from 0 to 1; say with --iso or --outside-probability from "
-                         "which value on a point is inside");
+    throw InputError(
+        file, 0,
+        "the values of '" + choice.names[c] + "' are from " + text_of(range.low) + " to " +
+            text_of(range.high) +
+            ", and probabilities are from 0 to 1; say with --iso V from which value on a point is "
+            "inside");
   }
 }
 

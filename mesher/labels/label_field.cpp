@@ -8,6 +8,7 @@
 #include "common/tolerances.h"
 #include "mesher/labels/distance_transform.h"
 #include "mesher/labels/image_bricks.h"
+#include "mesher/labels/interface_cells.h"
 #include "mesher/labels/label_bricks.h"
 #include "mesher/tuning/image_tuning.h"
 #include "mesher/tuning/label_tuning.h"
@@ -332,91 +333,17 @@ bool LabelField::is_certain(const Vec3& point) const {
 
 std::unique_ptr<FieldSampler> LabelField::sampler() const { return std::make_unique<Sampler>(*this); }
 
-/// Finds the cells that an interface crosses within cubes of eight nodes, one cube at a time.
-class LabelField::InterfaceFinder {
- public:
-  /// Cells as large as voxels or larger count if they overlap the cube. Smaller ones count if their corners
-  /// and the middles of their edges, faces and interior belong to more than one region.
-  explicit InterfaceFinder(const LabelField& field)
-      : cells_(field.voxels().box),
-        smaller_(field.voxels().cell_size < (1 - tolerance::coinciding_cells) * field.shared_->voxel),
-        on_voxels_(field.refined(0)),
-        sampler_(on_voxels_->sampler()),
-        max_slope_(std::sqrt(3.0) * 2 * field.shared_->bricks.max_distance() *
-                   field.shared_->voxels_per_cell.norm()),
-        band_(LabelSmoother::band) {}
-
-  /// \param low, high bounding box of the cube, cells
-  void append_cells(const Vec3& low, const Vec3& high, std::vector<MortonKey>& out) {
-    std::array<int, 3> from, to;
-    for (int a = 0; a < 3; ++a) {
-      from[a] = std::max(0, static_cast<int>(std::floor(low[a] + tolerance::coinciding_cells)));
-      to[a] = std::min(cells_[a], static_cast<int>(std::ceil(high[a] - tolerance::coinciding_cells)));
-    }
-    append_range(from, to, out);
-  }
-
- private:
-  void append_range(const std::array<int, 3>& from, const std::array<int, 3>& to,
-                    std::vector<MortonKey>& out) {
-    int longest = 0;
-    for (int a = 1; a < 3; ++a)
-      if (to[a] - from[a] > to[longest] - from[longest]) longest = a;
-    if (smaller_ && to[longest] - from[longest] > LabelTuning::Field::small_range) {
-      if (is_far_from_interfaces(from, to)) return;
-      std::array<int, 3> middle_to = to, middle_from = from;
-      middle_to[longest] = middle_from[longest] = (from[longest] + to[longest]) / 2;
-      append_range(from, middle_to, out);
-      append_range(middle_from, to, out);
-      return;
-    }
-    for (int z = from[2]; z < to[2]; ++z)
-      for (int y = from[1]; y < to[1]; ++y)
-        for (int x = from[0]; x < to[0]; ++x)
-          if (!smaller_ || is_mixed(x, y, z)) out.push_back(morton_encode(x, y, z));
-  }
-
-  /// True if the lead of the region at the middle of a range of cells exceeds the possible change of
-  /// distances between there and the corners.
-  bool is_far_from_interfaces(const std::array<int, 3>& from, const std::array<int, 3>& to) {
-    Vec3 middle, half;
-    for (int a = 0; a < 3; ++a) {
-      middle[a] = 0.5 * (from[a] + to[a]);
-      half[a] = 0.5 * (to[a] - from[a]);
-    }
-    const double voxels_per_cell = band_ / on_voxels_->band();
-    return sampler_->nearest(middle).margin * voxels_per_cell >
-           (1 + tolerance::coinciding_cells) * max_slope_ * half.norm();
-  }
-
-  bool is_mixed(int x, int y, int z) {
-    const RegionIndex there = sampler_->nearest_at_voxel(x, y, z).region;
-    for (int k = 1; k < 27; ++k) {
-      const int dx = k % 3, dy = k / 3 % 3, dz = k / 9;  // half voxels
-      if (sampler_->nearest(Vec3(x + 0.5 * dx, y + 0.5 * dy, z + 0.5 * dz)).region != there) return true;
-    }
-    return false;
-  }
-
-  const std::array<int, 3> cells_;
-  const bool smaller_;
-  const std::shared_ptr<const MaterialField> on_voxels_;
-  const std::unique_ptr<FieldSampler> sampler_;
-  /// Maximum change of a distance (smallest spacings) over a cell, as distances are trilinear between nodes
-  /// clamped to the band.
-  const double max_slope_;
-  const double band_;
-};
-
 std::vector<MortonKey> LabelField::interface_voxels() const {
   const LabelBricks& all = shared_->bricks;
   const auto to_cells = [&](const Vec3& node) -> Vec3 {
     return (node - shared_->first_node).cwiseQuotient(shared_->voxels_per_cell);
   };
+  const std::shared_ptr<const MaterialField> on_voxels = refined(0);
+  const bool smaller = voxels().cell_size < (1 - tolerance::coinciding_cells) * shared_->voxel;
   const auto rows = static_cast<std::size_t>(all.counts[1]) * all.counts[2];
   std::vector<MortonKey> keys = parallel_collect<MortonKey>(
       0, rows, 1, [&](std::size_t begin, std::size_t end, std::vector<MortonKey>& out) {
-        InterfaceFinder finder(*this);
+        InterfaceCells finder(*on_voxels, smaller);
         std::array<std::uint16_t, brick_volume> own;
         for (std::size_t row = begin; row < end; ++row)
           for (int bx = 0; bx < all.counts[0]; ++bx) {

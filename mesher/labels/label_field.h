@@ -48,7 +48,6 @@ class LabelField final : public MaterialField, private VoxelVolume {
 
  private:
   class Sampler;
-  class InterfaceFinder;
   struct Shared;
 
   /// True at voxel centres of a segmented volume, provided that cells are at most half a voxel.

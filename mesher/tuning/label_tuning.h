@@ -100,6 +100,9 @@ struct LabelTuning {
     static constexpr double clamped_share = 0.98;
     /// Ranges with fewer cells along a side are not tested as a whole, since that does not pay.
     static constexpr int small_range = 8;
+    /// Lead of a region at the corners of a cell, in cells, from which on it has the whole cell: far more
+    /// than rounding, and than what distances change over tolerance::coinciding_cells.
+    static constexpr double min_certain_lead = 1e-4;
   };
 
   /// Labels thinner than cells resolve.

@@ -27,8 +27,12 @@ inline bool vanishes(const Tet& t) {
 /// The moves of merge_points(): which points stay, and onto which ones the others move.
 class BulkMerger {
  public:
-  BulkMerger(const EditableMesh& mesh, const PointMerging& options)
-      : mesh_(mesh), options_(options), max_squared_(options.max_distance * options.max_distance) {}
+  /// \param progress see merge_points()
+  BulkMerger(const EditableMesh& mesh, const PointMerging& options, const Progress* progress)
+      : mesh_(mesh),
+        options_(options),
+        progress_(progress),
+        max_squared_(options.max_distance * options.max_distance) {}
   /// Finds the moves. False if a tet is not positive or the boundary meets itself.
   bool run();
   /// The remaining tets, in order, with their regions.
@@ -86,6 +90,9 @@ class BulkMerger {
   /// Moves points onto other targets, or back, if they have had enough.
   ///
   /// \param points receives the same points in ascending order, each once
+  ///
+  /// \throws OutOfTime or Interrupted: each of the loops below asks here, as they may have many passes where
+  ///   surfaces lie close together
   void move_elsewhere(std::vector<Index>& points);
   /// Moves points onto other targets, or back, until none of the faces is bad.
   void repair_faces();
@@ -108,6 +115,7 @@ class BulkMerger {
 
   const EditableMesh& mesh_;
   const PointMerging& options_;
+  const Progress* progress_;  ///< may be null
   const double max_squared_;
   std::vector<InterfaceFace> faces_;
   std::vector<Index> pieces_;          ///< by face: one of its piece

@@ -215,6 +215,7 @@ void BulkMerger::undo(Index p) {
 }
 
 void BulkMerger::move_elsewhere(std::vector<Index>& points) {
+  if (progress_) progress_->throw_if_stopped();
   std::sort(points.begin(), points.end());
   points.erase(std::unique(points.begin(), points.end()), points.end());
   std::vector<Index> targets(points.size());
@@ -340,12 +341,12 @@ std::vector<InterfaceFace> BulkMerger::faces() const {
       });
 }
 
-bool merge_points(EditableMesh& mesh, const PointMerging& options) {
+bool merge_points(EditableMesh& mesh, const PointMerging& options, const Progress* progress) {
   std::vector<Tet> tets;
   std::vector<RegionId> regions;
   std::vector<InterfaceFace> faces;
   {
-    BulkMerger merger(mesh, options);
+    BulkMerger merger(mesh, options, progress);
     if (!merger.run()) return false;
     merger.tets(tets, regions);
     faces = merger.faces();

@@ -5,6 +5,7 @@
 
 #include "simplify/mesh/editable_mesh.h"
 #include "simplify/tuning/merging_tuning.h"
+#include "tetwright/progress.h"
 
 namespace tetwright {
 
@@ -42,9 +43,11 @@ struct PointMerging {
 /// Links, incident tets and patches are set anew; points that moved are dead, and all other points keep their
 /// numbers and positions.
 ///
+/// \param progress tells whether the work should end; may be null
 /// \return false if nothing was changed: a tet is not positive (exact sign), or the boundary meets itself
+/// \throws OutOfTime or Interrupted if the work should end; nothing was changed then
 ///
 /// \pre no operation has run
-bool merge_points(EditableMesh& mesh, const PointMerging& options);
+bool merge_points(EditableMesh& mesh, const PointMerging& options, const Progress* progress = nullptr);
 
 }  // namespace tetwright

@@ -47,7 +47,7 @@ TetMesh Engine::take() && {
 
 void Engine::merge_points(const PointMerging& options) {
   const std::vector<double> before = region_volumes(mesh_);
-  if (!tetwright::merge_points(mesh_, options)) return;
+  if (!tetwright::merge_points(mesh_, options, progress_)) return;
   const std::vector<double> after = region_volumes(mesh_);
   std::vector<VolumeChange> changes;
   for (std::size_t r = 0; r < after.size(); ++r)

@@ -53,6 +53,7 @@ class Engine {
   /// schedule calls this first, and rate_all() after setting its objective.
   void compact();
   /// Coarsens the mesh in bulk: tetwright::merge_points().
+  /// \throws OutOfTime or Interrupted if the work should end; the mesh is unchanged then
   /// \pre No operation has run; before compact().
   void merge_points(const PointMerging& options);
   /// InputSamples::keep_surface() with the original's surface, if there is one. Once, before any operation.

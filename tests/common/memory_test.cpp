@@ -5,6 +5,7 @@
 
 #include <fstream>
 
+#include "tests/common/io/expect_error.h"
 #include "tests/common/temporary_folder.h"
 #include "tetwright/error.h"
 
@@ -49,6 +50,23 @@ TEST_F(Memory, FindsTheLimitWhereTheGroupIsNamedAsTheHostSeesIt) {
   write("proc/self/cgroup", "0::/system.slice/docker-1.scope");
   write("sys/fs/cgroup/memory.max", "7000000");
   EXPECT_EQ(available_memory(root()), 7e6);
+}
+
+TEST_F(Memory, ThatIsHeldIsNotAvailable) {
+  const MemoryLimit limit(1e9);
+  {
+    HeldMemory held(4e8);
+    EXPECT_EQ(available_memory(), 6e8);
+    held.add(4e8);
+    EXPECT_EQ(available_memory(), 2e8);
+    EXPECT_NE(error_of<OutputError>([] {
+                require_memory(3e8, "more", "take less");
+              }).find("0.186265 GB are available beside the 0.745058 GB that images and masks take"),
+              std::string::npos);
+    held.add(4e8);
+    EXPECT_EQ(available_memory(), 0);
+  }
+  EXPECT_EQ(available_memory(), 1e9);
 }
 
 TEST_F(Memory, IgnoresWhatIsNoNumber) {

@@ -89,6 +89,9 @@ def test_images():
     assert len(tetwright.mesh(inside, iso="auto").tets) > 0
     maps = np.stack([1 / (1 + np.exp(-inside - 3)), np.zeros_like(inside)], axis=3)
     assert len(tetwright.mesh(maps, outside_probability=0.5, smooth=0.5).tets) > 0
+    for probability in (-0.1, 1.5):
+        with pytest.raises(tetwright.UsageError, match=str(probability)):
+            tetwright.mesh(maps, outside_probability=probability)
     with pytest.raises(tetwright.InputError, match="--iso"):
         tetwright.mesh(inside)
     with pytest.raises(tetwright.Error, match="from"):
@@ -133,7 +136,7 @@ def test_values_of_images_are_those_of_the_program(tmp_path):
     assert (tmp_path / "python.inp").read_bytes() == (tmp_path / "program.inp").read_bytes()
     assert (tmp_path / "python_bins.csv").read_text() == (tmp_path / "program_bins.csv").read_text()
     assert set(mesh.fields) == {"gray", "gray_min", "gray_max", "gray_bin"} and set(mesh.point_fields) == {"gray"}
-    assert [b["name"] for b in mesh.stats["bins"]["each"]][0] == "label_1_001"
+    assert [b["name"] for b in mesh.stats["bins"][0]["each"]][0] == "label_1_001"
     # On a mesh from elsewhere, by arrays, files and images of nibabel, and a mask.
     centres = mesh.points[mesh.tets].mean(axis=1)
     expected = 10 * (centres[:, 0] - 1) / 2 + 0.5
@@ -152,6 +155,10 @@ def test_values_of_images_are_those_of_the_program(tmp_path):
         tetwright.values(arrays, {"g": gray}, origin=(500, 0, 0))
     with pytest.raises(tetwright.UsageError, match="give a dict from names of fields to images"):
         tetwright.values(arrays, gray)
+    both = tetwright.values(arrays, {"a": gray, "b": gray}, bins={"a": 2, "b": [50.0]}, affine=affine)
+    assert {"a_bin", "b_bin"} < set(both.fields) and [b["values"] for b in both.stats["bins"]] == ["a", "b"]
+    with pytest.raises(tetwright.UsageError, match="only one is possible"):
+        tetwright.values(arrays, {"a": gray, "b": gray}, bins={"a": 2, "b": 2}, modulus={"a": [1, 1], "b": [1, 1]})
 
 
 def test_bricks_give_the_bytes_of_the_program(tmp_path):

@@ -76,6 +76,7 @@ struct CommandLine {
   std::vector<NamedValue> materials;  ///< inputs after the positional ones: name and file
   std::vector<NamedValue> sheets, partitions;  ///< further inputs: name and file
   std::string modulus_of;                      ///< name of the values of --modulus
+  std::optional<ModulusLaw> modulus;           ///< --modulus
   std::optional<double> min_modulus;           ///< --min-modulus
   PrepareOptions options;  ///< options of commands that make meshes; `check` uses some of them
   OutputOptions outputs;

@@ -12,6 +12,8 @@ namespace tetwright {
 
 namespace {
 
+constexpr Range probability{0, 1, true, "a probability from 0 to 1"};
+
 IsoValue parse_iso(const std::string& text) {
   IsoValue iso;
   std::string value = text;
@@ -40,9 +42,9 @@ void add_images(CLI::App& app, CommandLine& c) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   add_parsed<std::optional<double>>(
       app, "--outside-probability", c.options.images.outside_probability, "P",
-      [](const std::string& text) { return parse_number("--outside-probability", text, any_number); },
-      "The inputs are probability maps, one for each material; points where all are below P are outside "
-      "(default: what they lack to 1)");
+      [](const std::string& text) { return parse_number("--outside-probability", text, probability); },
+      "The inputs are probability maps, one for each material; points where all are below P are outside, "
+      "from 0 to 1 (default: what they lack to 1)");
   add_parsed<std::optional<double>>(
       app, "--smooth", c.options.images.smoothing, "VOXELS",
       [](const std::string& text) { return parse_number("--smooth", text, positive); },

@@ -166,10 +166,11 @@ void print_parts(const PartitionStatistics& partition) {
 }
 
 /// Line such as "values 'density': 0.1 to 1.2 in tets, mean 0.6; 16 bins".
-void print_values(const ValueReport& values, const std::optional<BinsReport>& bins) {
+void print_values(const ValueReport& values, const std::vector<BinsReport>& divisions) {
   std::printf("values %s: %.6g to %.6g in tets, mean %.6g", in_quotes(values.name).c_str(), values.smallest,
               values.largest, values.mean);
-  if (bins && bins->field == values.name) std::printf("; %zu bins", bins->bins.size());
+  for (const BinsReport& bins : divisions)
+    if (bins.field == values.name) std::printf("; %zu bins", bins.bins.size());
   std::printf("\n");
 }
 

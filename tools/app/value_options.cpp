@@ -101,28 +101,36 @@ void add_value_rules(CLI::App& app, CommandLine& c) {
          "with "
          "the label of its material, for segmented volumes (default: all)")
       ->type_name("FILE|labels");
-  app.add_option_function<std::string>(
+  app.add_option_function<std::vector<std::string>>(
          "--bins",
-         [&c](const std::string& text) {
-           const NamedValue named = split_named(text, "--bins", "N");
-           c.options.values.bins_of = named.name;
-           c.options.values.bins = parse_bins(named.value);
+         [&c](const std::vector<std::string>& all) {
+           for (const std::string& text : all) {
+             const NamedValue named = split_named(text, "--bins", "N");
+             c.options.values.bins.push_back({named.name, parse_bins(named.value)});
+           }
          },
          "Divide the tets of each material by the values NAME: into N bins of equal width, or at these "
-         "values; "
-         "sets MATERIAL_001, MATERIAL_002 ... in .inp .bdf .feb .msh, and a table beside the mesh")
-      ->type_name("NAME=N|A,B,...");
-  app.add_option_function<std::string>(
+         "values; sets MATERIAL_001, MATERIAL_002 ... in .inp .bdf .feb .msh, and a table beside the mesh; "
+         "repeatable for other NAMEs, with sets MATERIAL_NAME_001 ...")
+      ->expected(1)
+      ->type_name("NAME=N|A,B,...")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  app.add_option_function<std::vector<std::string>>(
          "--modulus",
-         [&c](const std::string& text) {
-           const NamedValue named = split_named(text, "--modulus", "A,B");
+         [&c](const std::vector<std::string>& all) {
+           if (all.size() > 1)
+             throw CLI::ValidationError("--modulus",
+                                        "only one is possible in a call, since an element has "
+                                        "one section with one material; leave out the others");
+           const NamedValue named = split_named(all.front(), "--modulus", "A,B");
            c.modulus_of = named.name;
-           c.options.values.modulus = parse_modulus(named.value);
+           c.modulus = parse_modulus(named.value);
          },
-         "Elastic modulus of each bin, A (S value + T)^B of its mean value; S is 1 and T 0 by default. "
-         "Poisson's "
-         "ratio is 0.3. For .inp .bdf .feb")
-      ->type_name("NAME=A,B[,S,T]");
+         "Elastic modulus of each bin of NAME, A (S value + T)^B of its mean value; S is 1 and T 0 by "
+         "default. Poisson's ratio is 0.3. For .inp .bdf .feb; once, since a tet has one modulus")
+      ->expected(1)
+      ->type_name("NAME=A,B[,S,T]")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   add_number(app, "--min-modulus", c.min_modulus, positive,
              "Bins of a smaller modulus get this one, such as those of marrow and air");
 }
@@ -145,12 +153,18 @@ void add_values_options(CLI::App& app, CommandLine& c) {
 
 void complete_value_options(CommandLine& out) {
   ValueOptions& values = out.options.values;
-  if (!out.modulus_of.empty() && out.modulus_of != values.bins_of)
+  if (out.min_modulus && !out.modulus)
+    throw UsageError("--min-modulus is for --modulus; give that too, or leave it out");
+  if (!out.modulus) return;
+  if (values.images.empty())
+    throw UsageError("--modulus is for the values of an image; give --values NAME=IMAGE");
+  if (out.min_modulus) out.modulus->minimum = *out.min_modulus;
+  const auto bins = std::find_if(values.bins.begin(), values.bins.end(),
+                                 [&](const ValueBins& of) { return of.of == out.modulus_of; });
+  if (bins == values.bins.end())
     throw UsageError("--modulus " + out.modulus_of + " needs the bins of these values; give --bins " +
                      out.modulus_of + "=N");
-  if (out.min_modulus && !values.modulus)
-    throw UsageError("--min-modulus is for --modulus; give that too, or leave it out");
-  if (out.min_modulus) values.modulus->minimum = *out.min_modulus;
+  bins->modulus = out.modulus;
 }
 
 }  // namespace tetwright

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "tetwright/io.h"
 #include "tetwright/label_masks.h"
 #include "tetwright/resources.h"
+#include "tools/prepare/mask_input.h"
 
 namespace tetwright {
 
@@ -21,6 +23,13 @@ bool has_fractions(const ImageVolume& image) {
   return std::any_of(image.channels.begin(), image.channels.end(), [](const std::vector<float>& channel) {
     return std::any_of(channel.begin(), channel.end(), [](float v) { return v != std::floor(v); });
   });
+}
+
+double bytes_of_channels(const ImageVolume& image) {
+  double bytes = 0;
+  for (const std::vector<float>& channel : image.channels)
+    bytes += static_cast<double>(channel.size()) * sizeof(float);
+  return bytes;
 }
 
 /// Appends the channels of an image to those before, on the same grid.
@@ -111,13 +120,19 @@ LabelInput read_images(std::vector<Input>& volumes, PrepareRun& run) {
   ImageChoice choice = choice_of(run.options);
   CommonGrid grid;
   ImageVolume all;
+  std::map<std::string, std::string> file_of_name;
   UniqueNames names(printable_name);
   (void)names.add(outside_name);
   for (Input& input : volumes) {
     run.progress.throw_if_stopped();
     const std::string file = input.name,
                       own = input.material.empty() ? input.material_name() : input.material;
-    ImageVolume image = take_image(input, run.seconds_waited);
+    ImageVolume image = [&] {
+      const HeldMemory before(bytes_of_channels(all));
+      return take_image(input, run.seconds_waited);
+    }();
+    const auto [same, first_with_name] = file_of_name.emplace(printable_name(own), file);
+    if (!first_with_name) throw_same_name("images", same->first, same->second, file);
     const std::size_t channels = image.channels.size();
     for (std::size_t c = 0; c < channels; ++c)
       choice.names.push_back(names.add(channels == 1 ? own : own + "_" + std::to_string(c + 1)));

@@ -199,6 +199,13 @@ bool are_masks(const std::vector<Input>& volumes) {
          is_layered(volumes.front());
 }
 
+void throw_same_name(const std::string& what, const std::string& name, const std::string& file,
+                     const std::string& other) {
+  throw UsageError(file + " and " + other + " are two " + what + " called '" + name +
+                   "'; name them apart, such as --material " + name + "_1=" + file + " --material " + name +
+                   "_2=" + other);
+}
+
 LabelVolume join_masks(std::vector<Input>& volumes, LabelChoice& choice, PrepareRun& run) {
   std::map<std::string, MaterialTag> known;
   if (!choice.names_file.empty())
@@ -211,6 +218,7 @@ LabelVolume join_masks(std::vector<Input>& volumes, LabelChoice& choice, Prepare
   MaskTags tags(choice.names_file, known);
   UniqueNames names(printable_name);
   (void)names.add("outside");
+  std::map<std::string, const Input*> input_of_name;
   double done = 0;
   for (Input& input : volumes) {
     run.progress.throw_if_stopped();
@@ -243,6 +251,11 @@ LabelVolume join_masks(std::vector<Input>& volumes, LabelChoice& choice, Prepare
       std::map<MaterialTag, LabelMask> added;
       for (const NamedMask& mask : of_layers[l]) {
         const std::string name = names.add(mask.name);
+        // Segments of a file cannot be named by options; a number makes their names unique.
+        if (!layered) {
+          const auto [same, first_with_name] = input_of_name.emplace(printable_name(mask.name), &input);
+          if (!first_with_name) throw_same_name("masks", same->first, same->second->name, file);
+        }
         if (printable_name(mask.name) == "outside")
           throw UsageError(
               file +

@@ -28,4 +28,9 @@ bool are_masks(const std::vector<Input>& volumes);
 /// \throws NothingToMeshError if all masks are empty
 LabelVolume join_masks(std::vector<Input>& volumes, LabelChoice& choice, PrepareRun& run);
 
+/// \param what the inputs for the message: "masks"
+/// \throws UsageError that names both files, and says how to name the materials in them
+[[noreturn]] void throw_same_name(const std::string& what, const std::string& name, const std::string& file,
+                                  const std::string& other);
+
 }  // namespace tetwright

@@ -13,6 +13,7 @@
 #include "tetwright/simplify.h"
 #include "tools/prepare/input_changes.h"
 #include "tools/prepare/value_input.h"
+#include "tools/prepare/value_rules.h"
 
 namespace tetwright {
 
@@ -42,7 +43,9 @@ void refer_to(const TetMesh& mesh, const char* name, const PrepareRun& run, Prep
 
 ScanInput read_scan_with_images(std::vector<Input> inputs, const ValueInputs& images, PrepareRun& run) {
   ScanInput scan = read_scan(std::move(inputs), run);
-  check_images_meet(images, box_of_scan(scan), run);
+  check_images_meet(images, box_of_scan(scan),
+                    run.options.cells.keep_outside ? std::vector<MaterialTag>() : materials_of_scan(scan),
+                    run);
   return scan;
 }
 
@@ -89,7 +92,8 @@ Prepared mesh_from_tets(std::vector<Input> inputs, const ValueInputs& images, Pr
   TetInput input = read_tets(std::move(inputs.front()), run);
   Box3 box;
   for (const Vec3& p : input.mesh.points) box.add(p);
-  check_images_meet(images, box, run);
+  check_images_meet(images, box, {}, run);
+  if (input.with_fields) check_field_names(*input.with_fields, run);
   inputs.clear();
   const std::optional<SurfaceToFollow> surface = followed_interfaces(input.mesh, run);
   refer_to(input.mesh, "the mesh before", run, result);
@@ -223,6 +227,9 @@ void check_options(Task task, const PrepareOptions& options) {
   }
   if (target.tolerance && options.schedule.kind == Schedule::paper)
     throw UsageError("--schedule paper does not bound distances; leave out --tolerance, or --schedule");
+  if (const std::optional<double>& p = options.images.outside_probability; p && !(*p >= 0 && *p <= 1))
+    throw UsageError("--outside-probability " + short_number(*p) +
+                     " is no probability; give a number from 0 to 1 (for other values --iso)");
   check_value_options(task, options.values);
   if (options.bricks.use == BrickOptions::Use::always) check_bricks(task, options);
   if (options.bricks.use == BrickOptions::Use::never && !options.bricks.scratch.empty())

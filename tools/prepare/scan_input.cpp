@@ -179,7 +179,10 @@ LabelInput read_labels(std::optional<LabelVolume> in_memory, std::vector<Input>&
                                                   : take_label_source(inputs.front(), run.seconds_waited);
   if (!masks && run.options.labels.names_file.empty()) take_names(source->grid(), choice);
   run.report.material_colours = source->grid().colours;
-  if (run.options.values.own_label) run.value_labels = copy_labels(*source);
+  if (run.options.values.own_label) {
+    run.value_labels = copy_labels(*source);
+    run.held.add(static_cast<double>(run.value_labels->labels.size()) * sizeof(MaterialTag));
+  }
   LabelInput labels = make_label_input(std::move(source), run.report.inputs.front(), choice, &run.progress);
   run.report.diagnostics.insert(run.report.diagnostics.end(), labels.findings.begin(), labels.findings.end());
   run.report.volume.emplace(labels);

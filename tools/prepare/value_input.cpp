@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <set>
 #include <string>
 #include <utility>
 #include <variant>
@@ -12,6 +11,7 @@
 #include "tetwright/error.h"
 #include "tetwright/io.h"
 #include "tetwright/resources.h"
+#include "tools/prepare/value_rules.h"
 
 namespace tetwright {
 
@@ -36,15 +36,32 @@ void adapt_space(LabelGrid& grid, const std::string& file, const std::string& wh
                                (of_mesh.empty() ? std::string("unknown") : of_mesh)});
 }
 
+double bytes_of(const ImageVolume& image) {
+  double bytes = 0;
+  for (const std::vector<float>& channel : image.channels)
+    bytes += static_cast<double>(channel.size()) * sizeof(float);
+  return bytes;
+}
+
+double bytes_of(const LabelVolume& labels) {
+  return static_cast<double>(labels.labels.size()) * sizeof(MaterialTag);
+}
+
+/// Memory of an ImageMask.
+void require_mask_memory(const LabelGrid& image, const std::string& file) {
+  require_memory(static_cast<double>(image.voxels()) * sizeof(std::uint32_t), "the mask of the image " + file,
+                 "crop the image or make it coarser");
+}
+
 /// Sets a field, in place of one with this name.
-void set_field(std::vector<MeshField>& fields, MeshField field, const char* kind, const std::string& file,
+void set_field(std::vector<MeshField>& fields, MeshField field, const char* kind, const std::string& by,
                PrepareReport& report) {
   if (std::erase_if(fields, [&](const MeshField& f) { return f.name == field.name; }) > 0)
     report.diagnostics.push_back({.code = DiagnosticCode::input_dropped,
                                   .file = report.inputs.front(),
                                   .what = std::string(kind) + " field '" + field.name + "'",
                                   .count = 1,
-                                  .done = "replaced by the values of " + file});
+                                  .done = "replaced by " + by});
   fields.push_back(std::move(field));
 }
 
@@ -99,38 +116,6 @@ void report_findings(const ValueReport& found, const std::string& counting, Prep
 
 }  // namespace
 
-void check_value_options(Task task, const ValueOptions& options) {
-  std::set<std::string> names;
-  for (const ValueImage& image : options.images) {
-    if (image.name.empty())
-      throw UsageError("the values of " + image.file + " need a name; give NAME=" + image.file);
-    if (!names.insert(image.name).second)
-      throw UsageError("two images are called '" + image.name + "'; give each its own name");
-  }
-  if (options.images.empty()) {
-    if (task == Task::values) throw UsageError("there is no image; give NAME=IMAGE after the mesh");
-    const char* const other = !options.mask_file.empty() || options.own_label ? "--values-mask"
-                              : options.minimum || options.maximum || options.deviation
-                                  ? "--values-statistics"
-                              : !options.bins_of.empty() ? "--bins"
-                              : options.modulus          ? "--modulus"
-                                                         : nullptr;
-    if (other)
-      throw UsageError(std::string(other) + " is for the values of an image; give --values NAME=IMAGE");
-  }
-  if (options.own_label && task != Task::prepare && task != Task::mesh)
-    throw UsageError(
-        "--values-mask labels is for the segmented volume that 'prepare' and 'mesh' read; give a volume, "
-        "--values-mask FILE");
-  if (!options.bins_of.empty() && !names.contains(options.bins_of))
-    throw UsageError("--bins " + options.bins_of + ": no image has this name; give --values " +
-                     options.bins_of + "=IMAGE");
-  if (!options.bins_of.empty() && options.bins.count == 0 && options.bins.edges.empty())
-    throw UsageError("--bins needs a number of bins, or the values between them");
-  if (options.modulus && options.bins_of.empty())
-    throw UsageError("--modulus gives each bin an elastic modulus; give --bins NAME=N");
-}
-
 /// Notes a spacing that the file does not give.
 void report_spacing(const LabelGrid& grid, const std::string& file, PrepareReport& report) {
   if (grid.spacing_assumed)
@@ -156,6 +141,7 @@ ValueInputs read_value_inputs(PrepareRun& run) {
     inputs.images.push_back(
         image.image ? image.image
                     : std::make_shared<const ImageVolume>(read_image(image.file, run.options.volume_file)));
+    run.held.add(bytes_of(*inputs.images.back()));
     report_spacing(*inputs.images.back(), image.file, run.report);
     run.progress.throw_if_stopped();
     if (const std::size_t channels = inputs.images.back()->channels.size(); channels != 1)
@@ -167,14 +153,41 @@ ValueInputs read_value_inputs(PrepareRun& run) {
     inputs.mask = options.mask ? options.mask
                                : std::make_shared<const LabelVolume>(
                                      read_label_volume(options.mask_file, run.options.volume_file));
+  if (inputs.mask) run.held.add(bytes_of(*inputs.mask));
+  if (inputs.mask && std::all_of(inputs.mask->labels.begin(), inputs.mask->labels.end(),
+                                 [](MaterialTag label) { return label == 0; }))
+    throw InputError(options.mask_file, 0,
+                     "has no voxel other than 0, so that no voxel of an image counts; give another "
+                     "--values-mask, or leave it out");
   return inputs;
 }
 
-void check_images_meet(const ValueInputs& inputs, const Box3& box, const PrepareRun& run) {
+void check_images_meet(const ValueInputs& inputs, const Box3& box, const std::vector<MaterialTag>& materials,
+                       const PrepareRun& run) {
+  const ValueOptions& options = run.options.values;
   for (std::size_t i = 0; i < inputs.images.size(); ++i) {
+    const std::string& file = options.images[i].file;
     LabelGrid grid = *inputs.images[i];
     (void)change_space(grid, space_of_mesh(run.report));
-    check_image_meets(grid, box.low, box.high, run.options.values.images[i].file, run.report.inputs.front());
+    check_image_meets(grid, box.low, box.high, file, run.report.inputs.front());
+    ImageMask mask;
+    if (options.own_label || inputs.mask) require_mask_memory(grid, file);
+    if (options.own_label && run.value_labels) {
+      mask = ImageMask::own_label(grid, *run.value_labels);
+    } else if (inputs.mask) {
+      LabelVolume adapted;
+      const bool same = inputs.mask->space == space_of_mesh(run.report);
+      if (!same) {
+        adapted = *inputs.mask;
+        (void)change_space(adapted, space_of_mesh(run.report));
+      }
+      mask = ImageMask::nonzero(grid, same ? *inputs.mask : adapted);
+    }
+    const CountedVoxels counted = counted_voxels(*inputs.images[i], mask, materials);
+    if (counted.count == 0) throw_no_voxel_counts(file);
+    for (const ValueBins& bins : options.bins)
+      if (bins.modulus && bins.of == options.images[i].name)
+        check_modulus(*bins.modulus, bins.of, counted, run.progress);
   }
 }
 
@@ -194,6 +207,13 @@ Box3 box_of_scan(const ScanInput& input) {
     box.add(labels.origin + labels.directions * index);
   }
   return box;
+}
+
+std::vector<MaterialTag> materials_of_scan(const ScanInput& input) {
+  std::vector<MaterialTag> tags;
+  if (const auto* labels = std::get_if<LabelInput>(&input))
+    for (const auto& material : labels->materials) tags.push_back(material.tag);
+  return tags;
 }
 
 std::shared_ptr<const LabelVolume> copy_labels(const LabelSource& source) {
@@ -218,6 +238,8 @@ void take_values(ValueInputs inputs, Prepared& result, PrepareRun& run) {
   PrepareReport& report = run.report;
   TetMesh& mesh = result.mesh;
   if (options.images.empty()) return;
+  if (run.task == Task::values) check_field_names(mesh, run);
+  result.bins.resize(options.bins.size());
   std::shared_ptr<const LabelVolume> mask = options.own_label ? run.value_labels : inputs.mask;
   if (mask && !options.own_label && mask->space != space_of_mesh(report)) {
     auto adapted = std::make_shared<LabelVolume>(*mask);
@@ -236,6 +258,7 @@ void take_values(ValueInputs inputs, Prepared& result, PrepareRun& run) {
       adapt_space(*adapted, from.file, "image", report);
       image = adapted;
     }
+    if (mask) require_mask_memory(*image, from.file);
     const ImageMask counts = !mask               ? ImageMask()
                              : options.own_label ? ImageMask::own_label(*image, *mask)
                                                  : ImageMask::nonzero(*image, *mask);
@@ -244,28 +267,30 @@ void take_values(ValueInputs inputs, Prepared& result, PrepareRun& run) {
                      from.file, report.inputs.front(), &run.progress);
     report.values.push_back(report_of(from, values, mesh));
     report_findings(report.values.back(), counting, report);
-    if (options.bins_of == from.name) {
-      result.bins = bin_tets(mesh, from.name, values.mean, options.bins);
-      if (options.modulus) set_moduli(*options.modulus, *result.bins);
-    }
+    for (std::size_t b = 0; b < options.bins.size(); ++b)
+      if (options.bins[b].of == from.name)
+        result.bins[b] = bin_tets(mesh, from.name, values.mean, options.bins[b].rule);
+    const std::string of_image = "the values of " + from.file;
     const auto set_cells = [&](const char* suffix, std::vector<double>& of_tets) {
       if (!of_tets.empty())
-        set_field(mesh.cell_fields, {from.name + suffix, 1, false, std::move(of_tets)}, "cell", from.file,
+        set_field(mesh.cell_fields, {from.name + suffix, 1, false, std::move(of_tets)}, "cell", of_image,
                   report);
     };
     set_cells("", values.mean);
     set_cells("_min", values.minimum);
     set_cells("_max", values.maximum);
     set_cells("_deviation", values.deviation);
-    set_field(mesh.point_fields, {from.name, 1, false, std::move(values.at_points)}, "point", from.file,
+    set_field(mesh.point_fields, {from.name, 1, false, std::move(values.at_points)}, "point", of_image,
               report);
-    if (result.bins && options.bins_of == from.name)
-      set_field(mesh.cell_fields, field_of_bins(*result.bins), "cell", from.file, report);
+    for (const TetBins& bins : result.bins)
+      if (bins.field == from.name)
+        set_field(mesh.cell_fields, field_of_bins(bins), "cell", "the bins of " + from.file, report);
   }
-  if (result.bins) {
-    report.bins = *result.bins;
-    report.bins->of_tets = {};
-  }
+  name_apart(mesh, result.bins);
+  for (std::size_t b = 0; b < options.bins.size(); ++b)
+    if (options.bins[b].modulus) set_moduli(*options.bins[b].modulus, result.bins[b]);
+  report.bins = result.bins;
+  for (BinsReport& bins : report.bins) bins.of_tets = {};
   decide_severities(run.options.acceptance, report);
 }
 

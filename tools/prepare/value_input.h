@@ -18,24 +18,25 @@ struct ValueInputs {
   std::shared_ptr<const LabelVolume> mask;  ///< null: none
 };
 
-/// Checks ValueOptions for a task.
-///
-/// \throws UsageError if options cannot be combined or name an unknown image
-void check_value_options(Task task, const ValueOptions& options);
-
 /// Reads the images and the mask. Called first, so that errors in these files end a run early.
 ///
-/// \throws InputError in the cases of the readers, and if an image has several channels
+/// \throws InputError in the cases of the readers, if an image has several channels, and if the mask is empty
 ValueInputs read_value_inputs(PrepareRun& run);
 
-/// Checks that the images meet the box of the input, so that a run with an image elsewhere ends before it
-/// meshes.
+/// Checks that the images meet the box of the input, that any of their voxels count, and that these have a
+/// modulus, so that a run with an image elsewhere or an impossible modulus ends before it meshes.
 ///
-/// \throws InputError if one does not
-void check_images_meet(const ValueInputs& inputs, const Box3& box, const PrepareRun& run);
+/// \param materials tags of the materials that are meshed; empty: not known
+/// \throws InputError if an image does not
+/// \throws UsageError see check_modulus()
+void check_images_meet(const ValueInputs& inputs, const Box3& box, const std::vector<MaterialTag>& materials,
+                       const PrepareRun& run);
 
 /// Box of a scan: its surfaces, or all voxels.
 Box3 box_of_scan(const ScanInput& input);
+
+/// Tags of the materials of a volume; empty for surfaces.
+std::vector<MaterialTag> materials_of_scan(const ScanInput& input);
 
 /// Keeps the labels of a segmented volume for ValueOptions::own_label.
 std::shared_ptr<const LabelVolume> copy_labels(const LabelSource& source);

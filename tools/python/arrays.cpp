@@ -4,16 +4,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string_view>
+#include <span>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "common/io/names/mesh_fields.h"
-#include "common/io/volumes/encoded_volume.h"
+#include "common/io/volumes/voxel_data.h"
 #include "common/message_text.h"
 #include "tetwright/error.h"
 #include "tetwright/io.h"
+#include "tetwright/resources.h"
 
 namespace tetwright::python {
 
@@ -177,21 +178,25 @@ SizesObject to_sizes(const std::string& name, const Points& points, const Cells&
 
 namespace {
 
+std::string text_of_shape(const std::vector<std::int64_t>& shape) {
+  std::string text;
+  for (std::size_t k = 0; k < shape.size(); ++k) text += (k > 0 ? ", " : "") + std::to_string(shape[k]);
+  return "(" + text + ")";
+}
+
 /// Grid of an array with at least three axes.
-LabelGrid to_grid(const std::string& name, const py::array& voxels, const std::array<double, 3>& origin,
-                  const std::array<std::array<double, 3>, 3>& directions) {
+LabelGrid to_grid(const std::string& name, const PlacedShape& place) {
   LabelGrid grid;
   for (std::size_t a = 0; a < 3; ++a) {
-    const py::ssize_t count = voxels.shape(static_cast<py::ssize_t>(a));
-    if (count > std::numeric_limits<int>::max())
+    if (place.shape[a] > std::numeric_limits<int>::max())
       throw InputError(name, 0, "has more than 2147483647 voxels along an axis; give a part of it");
-    grid.size[a] = static_cast<int>(count);
+    grid.size[a] = static_cast<int>(place.shape[a]);
   }
-  grid.origin = Vec3(origin[0], origin[1], origin[2]);
+  grid.origin = Vec3(place.origin[0], place.origin[1], place.origin[2]);
   for (Eigen::Index row = 0; row < 3; ++row)
     for (Eigen::Index column = 0; column < 3; ++column)
       grid.directions(row, column) =
-          directions[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
+          place.directions[static_cast<std::size_t>(row)][static_cast<std::size_t>(column)];
   if (!grid.origin.allFinite() || !grid.directions.allFinite() || grid.directions.determinant() == 0)
     throw InputError(
         name, 0,
@@ -200,34 +205,81 @@ LabelGrid to_grid(const std::string& name, const py::array& voxels, const std::a
   return grid;
 }
 
-}  // namespace
-
-LabelVolume to_volume(const std::string& name, const Labels& labels, const std::array<double, 3>& origin,
-                      const std::array<std::array<double, 3>, 3>& directions) {
-  if (labels.ndim() != 3 || labels.size() == 0)
-    throw InputError(name, 0,
-                     "labels are an array of shape " + shape_text(labels) + "; give one of three axes");
-  LabelVolume volume{to_grid(name, labels, origin, directions), {}};
-  volume.labels.assign(labels.data(), labels.data() + labels.size());
-  return volume;
+bool is_empty(const std::vector<std::int64_t>& shape) {
+  return std::any_of(shape.begin(), shape.end(), [](std::int64_t n) { return n < 1; });
 }
 
-ImageVolume to_image(const std::string& name, const Pixels& values, const std::array<double, 3>& origin,
-                     const std::array<std::array<double, 3>, 3>& directions) {
-  if ((values.ndim() != 3 && values.ndim() != 4) || values.size() == 0)
-    throw InputError(name, 0,
-                     "the image is an array of shape " + shape_text(values) +
+/// Calls `set(from, to)` with the index of each voxel in a block and its number in the grid.
+template <class Set>
+void for_each_voxel(const LabelGrid& grid, const std::array<py::ssize_t, 3>& start, const py::array& block,
+                    const Set& set) {
+  std::array<py::ssize_t, 3> size{};
+  for (std::size_t a = 0; a < 3; ++a) {
+    size[a] = block.shape(static_cast<py::ssize_t>(a));
+    TETWRIGHT_CHECK(start[a] >= 0 && start[a] + size[a] <= grid.size[a]);
+  }
+  for (py::ssize_t z = 0; z < size[2]; ++z)
+    for (py::ssize_t y = 0; y < size[1]; ++y) {
+      auto to =
+          static_cast<std::size_t>(((start[2] + z) * grid.size[1] + start[1] + y) * grid.size[0] + start[0]);
+      for (py::ssize_t x = 0; x < size[0]; ++x) set(x, y, z, to++);
+    }
+}
+
+}  // namespace
+
+LabelFiller::LabelFiller(std::string name, const PlacedShape& place) : name_(std::move(name)) {
+  if (place.shape.size() != 3 || is_empty(place.shape))
+    throw InputError(
+        name_, 0, "labels are an array of shape " + text_of_shape(place.shape) + "; give one of three axes");
+  static_cast<LabelGrid&>(volume_) = to_grid(name_, place);
+  const auto voxels = static_cast<std::size_t>(volume_.voxels());
+  require_memory(static_cast<double>(voxels) * sizeof(MaterialTag), "the labels of " + name_,
+                 "crop the volume or make it coarser");
+  volume_.labels.resize(voxels);
+}
+
+void LabelFiller::put(const std::array<py::ssize_t, 3>& start, const Labels& block) {
+  const auto labels = block.unchecked<3>();
+  for_each_voxel(volume_, start, block, [&](py::ssize_t x, py::ssize_t y, py::ssize_t z, std::size_t to) {
+    volume_.labels[to] = labels(x, y, z);
+  });
+}
+
+ImageFiller::ImageFiller(std::string name, const PlacedShape& place) : name_(std::move(name)) {
+  if ((place.shape.size() != 3 && place.shape.size() != 4) || is_empty(place.shape))
+    throw InputError(name_, 0,
+                     "the image is an array of shape " + text_of_shape(place.shape) +
                          "; give one of three axes, or four if the last one is that of channels");
-  const LabelGrid grid = to_grid(name, values, origin, directions);
-  const std::int64_t channels = values.ndim() == 4 ? values.shape(3) : 1;
-  check_channels(channels,
-                 checked_size(std::vector<std::int64_t>(grid.size.begin(), grid.size.end()), name, 0),
-                 VoxelUse::image, name, 0);
-  // Checks the values, too.
-  const std::string_view bytes(reinterpret_cast<const char*>(values.data()),
-                               static_cast<std::size_t>(values.size()) * sizeof(float));
-  return image_of(EncodedVolume{
-      grid, {channels, 3}, {.type = VoxelType::float32}, ByteSource(bytes, ByteSource::Packing::none, name)});
+  static_cast<LabelGrid&>(image_) = to_grid(name_, place);
+  const std::int64_t channels = place.shape.size() == 4 ? place.shape[3] : 1;
+  check_channels(channels, checked_size(std::span(place.shape).first(3), name_, 0), VoxelUse::image, name_,
+                 0);
+  const auto voxels = static_cast<std::size_t>(image_.voxels());
+  require_memory(static_cast<double>(voxels) * static_cast<double>(channels) * sizeof(float),
+                 "the values of " + name_, "crop the image or make it coarser");
+  image_.channels.assign(static_cast<std::size_t>(channels), std::vector<float>(voxels));
+}
+
+void ImageFiller::put(const std::array<py::ssize_t, 3>& start, const Pixels& block) {
+  const auto values = block.unchecked<4>();
+  TETWRIGHT_CHECK(static_cast<std::size_t>(values.shape(3)) == image_.channels.size());
+  for (std::size_t c = 0; c < image_.channels.size(); ++c) {
+    std::vector<float>& channel = image_.channels[c];
+    for_each_voxel(image_, start, block, [&](py::ssize_t x, py::ssize_t y, py::ssize_t z, std::size_t to) {
+      const float value = values(x, y, z, static_cast<py::ssize_t>(c));
+      if (!std::isfinite(value)) {
+        const std::array<int, 3> at{static_cast<int>(start[0] + x), static_cast<int>(start[1] + y),
+                                    static_cast<int>(start[2] + z)};
+        throw InputError(
+            name_ + ": " +
+            bad_voxel<float>(
+                {at, static_cast<std::int64_t>(c), static_cast<std::int64_t>(image_.channels.size())},
+                reinterpret_cast<const char*>(&value), {.type = VoxelType::float32}));
+      }
+      channel[to] = value;
+    });
+  }
 }
 
 }  // namespace tetwright::python

@@ -27,8 +27,8 @@ using Points = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Cells = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 using Tags = py::array_t<MaterialTag, py::array::c_style | py::array::forcecast>;
 using Values = py::array_t<double, py::array::c_style | py::array::forcecast>;
-using Labels = py::array_t<MaterialTag, py::array::f_style | py::array::forcecast>;
-using Pixels = py::array_t<float, py::array::f_style | py::array::forcecast>;
+using Labels = py::array_t<MaterialTag, py::array::forcecast>;
+using Pixels = py::array_t<float, py::array::forcecast>;
 /// Name, whether the values are integers, and the values.
 using Fields = std::vector<std::tuple<std::string, bool, Values>>;
 /// Kind of the items (plural), number, and whether they are restored from other data.
@@ -53,11 +53,40 @@ std::vector<Dropped> to_dropped(const DroppedItems& items);
 /// Edge lengths of shape (n,) at the points of tets (m, 4) or triangles (m, 3).
 SizesObject to_sizes(const std::string& name, const Points& points, const Cells& cells,
                      const Values& lengths);
-/// Labels of shape (i, j, k); column a of `directions` is one voxel step along axis a.
-LabelVolume to_volume(const std::string& name, const Labels& labels, const std::array<double, 3>& origin,
-                      const std::array<std::array<double, 3>, 3>& directions);
-/// Values of an image, of shape (i, j, k) or (i, j, k, channels), all finite.
-ImageVolume to_image(const std::string& name, const Pixels& values, const std::array<double, 3>& origin,
-                     const std::array<std::array<double, 3>, 3>& directions);
+/// Where an array of voxels is: its shape, the centre of voxel (0, 0, 0), and one voxel step along each axis
+/// as a column of `directions`.
+struct PlacedShape {
+  std::vector<std::int64_t> shape;
+  std::array<double, 3> origin;
+  std::array<std::array<double, 3>, 3> directions;
+};
+
+/// A volume that is filled block by block, so that no array of all voxels is needed beside it.
+class LabelFiller {
+ public:
+  /// \throws OutputError if the labels exceed available_memory()
+  LabelFiller(std::string name, const PlacedShape& place);
+  /// Sets the labels of a block of shape (i, j, k) whose lowest voxel is `start`.
+  void put(const std::array<py::ssize_t, 3>& start, const Labels& block);
+  /// \pre all voxels have a label
+  LabelVolume take() { return std::move(volume_); }
+
+ private:
+  std::string name_;
+  LabelVolume volume_;
+};
+
+/// An image that is filled likewise, of shape (i, j, k) or (i, j, k, channels).
+class ImageFiller {
+ public:
+  ImageFiller(std::string name, const PlacedShape& place);
+  /// \param block of shape (i, j, k, channels), with all channels
+  void put(const std::array<py::ssize_t, 3>& start, const Pixels& block);
+  ImageVolume take() { return std::move(image_); }
+
+ private:
+  std::string name_;
+  ImageVolume image_;
+};
 
 }  // namespace tetwright::python

@@ -111,18 +111,17 @@ void write_mesh_files(Mesh& mesh, const std::string& path, const std::string& fo
   line.outputs.boundary = boundary;
   line.outputs.no_boundary = no_boundary;
   line.outputs.parts = parts;
-  if (mesh.bins) line.options.values.bins_of = mesh.bins->field;
+  for (const TetBins& bins : mesh.bins) line.options.values.bins.push_back({bins.field, {}});
   check_no_standard_output(line);
   check_output_paths(line);
   if (mesh.midside) check_holds_second_order(path, format);
   OutputFiles files;
   const MidsideNodes* midside = mesh.midside ? &*mesh.midside : nullptr;
-  const TetBins* bins = mesh.bins ? &*mesh.bins : nullptr;
   const auto write = [&](const TetMesh& tets) {
     if (parts > 0)
       write_tet_mesh({tets, midside}, partition_tets(tets, parts), path, &files, format);
     else
-      write_tet_mesh({tets, midside, bins}, path, &files, format);
+      write_tet_mesh({tets, midside, mesh.bins}, path, &files, format);
   };
   if (no_boundary) {
     TetMesh tets = mesh.mesh;
@@ -133,12 +132,12 @@ void write_mesh_files(Mesh& mesh, const std::string& path, const std::string& fo
     write(mesh.mesh);
   }
   if (!boundary.empty()) write_interfaces(mesh.mesh, boundary, &files);
-  if (const std::string table = bins_table_of(line); bins && !table.empty())
-    files.write(table, table_of_bins(mesh.mesh, *bins));
+  if (const std::string table = bins_table_of(line); !table.empty())
+    files.write(table, table_of_bins(mesh.mesh, mesh.bins));
   files.commit();
   PrepareReport report;
   report.patches = patches_of_input(mesh.mesh);
-  if (bins) report.bins = *bins;
+  report.bins = mesh.bins;
   find_unwritten(line, mesh.mesh, report);
   // The interpreter's lock protects the mesh's own lists from other threads.
   const py::gil_scoped_acquire acquire;

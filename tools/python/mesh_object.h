@@ -18,7 +18,7 @@ namespace py = pybind11;
 struct Mesh {
   TetMesh mesh;
   std::optional<MidsideNodes> midside;
-  std::optional<TetBins> bins;
+  std::vector<TetBins> bins;
   std::string stats;  ///< JSON; empty if no command made it
   std::vector<std::string> notes, shortfall;
 };

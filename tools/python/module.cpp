@@ -298,27 +298,36 @@ PYBIND11_MODULE(_core, module) {
       .def("add_sizes",
            [](NamedInputs& to, const std::string& name, const Points& points, const Cells& cells,
               const Values& lengths) { to.sizes[name] = to_sizes(name, points, cells, lengths); })
-      .def("add_volume",
-           [](NamedInputs& to, const std::string& name, const Labels& labels,
-              const std::array<double, 3>& origin, const std::array<std::array<double, 3>, 3>& directions) {
-             to.values[name] = to_volume(name, labels, origin, directions);
-           })
-      .def("add_image",
-           [](NamedInputs& to, const std::string& name, const Pixels& values,
-              const std::array<double, 3>& origin, const std::array<std::array<double, 3>, 3>& directions) {
-             to.values[name] = to_image(name, values, origin, directions);
-           })
+      .def("add_volume", [](NamedInputs& to, const std::string& name,
+                            LabelFiller& labels) { to.values[name] = labels.take(); })
+      .def("add_image", [](NamedInputs& to, const std::string& name,
+                           ImageFiller& image) { to.values[name] = image.take(); })
       .def("add_mask",
-           [](NamedInputs& to, const std::string& name, const Labels& labels,
-              const std::array<double, 3>& origin, const std::array<std::array<double, 3>, 3>& directions) {
-             to.masks[name] =
-                 std::make_shared<const LabelVolume>(to_volume(name, labels, origin, directions));
+           [](NamedInputs& to, const std::string& name, LabelFiller& labels) {
+             to.masks[name] = std::make_shared<const LabelVolume>(labels.take());
            })
-      .def("add_values_image", [](NamedInputs& to, const std::string& name, const Pixels& values,
-                                  const std::array<double, 3>& origin,
-                                  const std::array<std::array<double, 3>, 3>& directions) {
-        to.images[name] = std::make_shared<const ImageVolume>(to_image(name, values, origin, directions));
+      .def("add_values_image", [](NamedInputs& to, const std::string& name, ImageFiller& image) {
+        to.images[name] = std::make_shared<const ImageVolume>(image.take());
       });
+  py::class_<LabelFiller>(module, "Labels")
+      .def(py::init([](const std::string& name, const std::vector<std::int64_t>& shape,
+                       const std::array<double, 3>& origin,
+                       const std::array<std::array<double, 3>, 3>& directions) {
+        return std::make_unique<LabelFiller>(name, PlacedShape{shape, origin, directions});
+      }))
+      .def("put", &LabelFiller::put);
+  py::class_<ImageFiller>(module, "Image")
+      .def(py::init([](const std::string& name, const std::vector<std::int64_t>& shape,
+                       const std::array<double, 3>& origin,
+                       const std::array<std::array<double, 3>, 3>& directions) {
+        return std::make_unique<ImageFiller>(name, PlacedShape{shape, origin, directions});
+      }))
+      .def("put", &ImageFiller::put);
+  module.def("require_memory", [](const std::string& what, double bytes, double held, double limit) {
+    const MemoryLimit at_most(limit * gigabyte);
+    const HeldMemory others(held);
+    require_memory(bytes, what, "crop the image or make it coarser");
+  });
 
   bind_mesh(module);
 

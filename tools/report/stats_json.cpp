@@ -424,7 +424,7 @@ std::string stats_json(const CommandRun& ended) {
                          {"part_way", run.second_order->part_way},
                          {"straight", run.second_order->straight}};
   if (!run.values.empty()) j["values"] = values_json(run.values);
-  if (run.bins) j["bins"] = bins_json(*run.bins);
+  if (!run.bins.empty()) j["bins"] = bins_json(run.bins);
   if (ended.parts) j["parts"] = partition_json(*ended.parts);
   if (run.edge_lengths) j["edge_lengths"] = edge_lengths_json(*run.edge_lengths, run.sizes);
   if (run.crease_comparison) j["creases"] = creases_json(*run.crease_comparison);

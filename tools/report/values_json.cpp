@@ -34,23 +34,26 @@ nlohmann::json values_json(const std::vector<ValueReport>& values) {
   return all;
 }
 
-nlohmann::json bins_json(const BinsReport& bins) {
-  nlohmann::json each = nlohmann::json::array();
+nlohmann::json bins_json(const std::vector<BinsReport>& divisions) {
+  nlohmann::json all = nlohmann::json::array();
   const auto bound = [](double x) { return std::isfinite(x) ? nlohmann::json(x) : nlohmann::json(); };
-  for (const ValueBin& bin : bins.bins) {
-    each.push_back({{"name", bin.name},
-                    {"material", bin.material},
-                    {"bin", bin.number},
-                    {"low", bound(bin.low)},
-                    {"high", bound(bin.high)},
-                    {"tets", bin.tets},
-                    {"volume", bin.volume},
-                    {"mean", bin.mean}});
-    if (bin.modulus) each.back()["modulus"] = *bin.modulus;
+  for (const BinsReport& bins : divisions) {
+    nlohmann::json each = nlohmann::json::array();
+    for (const ValueBin& bin : bins.bins) {
+      each.push_back({{"name", bin.name},
+                      {"material", bin.material},
+                      {"bin", bin.number},
+                      {"low", bound(bin.low)},
+                      {"high", bound(bin.high)},
+                      {"tets", bin.tets},
+                      {"volume", bin.volume},
+                      {"mean", bin.mean}});
+      if (bin.modulus) each.back()["modulus"] = *bin.modulus;
+    }
+    all.push_back({{"values", bins.field}, {"each", each}});
+    if (bins.poisson) all.back()["poisson"] = *bins.poisson;
   }
-  nlohmann::json j = {{"values", bins.field}, {"each", each}};
-  if (bins.poisson) j["poisson"] = *bins.poisson;
-  return j;
+  return all;
 }
 
 }  // namespace tetwright

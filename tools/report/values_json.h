@@ -9,6 +9,6 @@
 namespace tetwright {
 
 nlohmann::json values_json(const std::vector<ValueReport>& values);
-nlohmann::json bins_json(const BinsReport& bins);
+nlohmann::json bins_json(const std::vector<BinsReport>& divisions);
 
 }  // namespace tetwright

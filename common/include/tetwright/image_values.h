@@ -43,6 +43,17 @@ class ImageMask {
   std::map<MaterialTag, std::uint32_t> group_of_;  ///< empty: 1 for all
 };
 
+/// Voxels of an image that count for a mesh.
+struct CountedVoxels {
+  std::size_t count = 0;
+  double lowest = 0, highest = 0;  ///< their values; 0 if there are none
+};
+
+/// Finds the finite voxels of a channel that count for any of the materials, or for any at all if `materials`
+/// is empty. Parallel.
+CountedVoxels counted_voxels(const ImageVolume& image, const ImageMask& mask,
+                             const std::vector<MaterialTag>& materials, std::size_t channel = 0);
+
 struct ImageValueOptions {
   std::size_t channel = 0;
   bool minimum = false, maximum = false, deviation = false;  ///< beside the mean

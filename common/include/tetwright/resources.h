@@ -61,7 +61,9 @@ double parallel_sum(std::size_t begin, std::size_t end, std::size_t grain,
 /// - the limits of the container (control groups of version 1 and 2: the process's own group and all its
 ///   ancestors),
 /// - the limits on address space and data (RLIMIT_AS, RLIMIT_DATA),
-/// - the MemoryLimit of the calling thread.
+/// - the MemoryLimit of the calling thread,
+///
+/// less the HeldMemory of the calling thread.
 ///
 /// Memory in use by other processes is not subtracted. May be called concurrently.
 /// \param root folder in which /proc and /sys are looked up; a missing file sets no limit
@@ -79,9 +81,27 @@ class MemoryLimit {
   double before_;
 };
 
+/// Reduces available_memory() on the constructing thread by memory that is in use and in no estimate, such as
+/// that of images which wait for the mesh.
+class HeldMemory {
+ public:
+  HeldMemory() = default;
+  /// \param bytes see add()
+  explicit HeldMemory(double bytes) { add(bytes); }
+  ~HeldMemory() { add(-bytes_); }
+  HeldMemory(const HeldMemory&) = delete;
+  HeldMemory& operator=(const HeldMemory&) = delete;
+
+  /// \param bytes negative: released
+  void add(double bytes);
+
+ private:
+  double bytes_ = 0;
+};
+
 /// Checks that `bytes` can be allocated.
 /// \throws OutputError if `bytes` exceeds available_memory(): "<what> would take about 12.3 GB of memory, and
-///   8 GB are available; <remedy>"
+///   8 GB are available; <remedy>", with the HeldMemory
 void require_memory(double bytes, const std::string& what, const std::string& remedy);
 
 }  // namespace tetwright

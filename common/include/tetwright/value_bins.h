@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,7 @@ struct ModulusLaw {
 struct ValueBin {
   MaterialTag material;
   std::size_t number;  ///< from 1, ascending with the values; bins without tets are left out
-  std::string name;    ///< unique: the material's name and the number, such as "bone_001"
+  std::string name;    ///< unique: the material's name and the number, such as "bone_001"; see name_apart()
   double low, high;    ///< bounds; infinite for the outer bins of BinRule::edges
   std::size_t tets;    ///< their number, at least 1
   double volume;       ///< input units cubed
@@ -57,6 +58,18 @@ struct TetBins {
 TetBins bin_tets(const TetMesh& mesh, const std::string& field, const std::vector<double>& values,
                  const BinRule& rule);
 
+/// Gives the bins of several divisions of a mesh names that differ: with the name of the values, such as
+/// "bone_density_001". Leaves a single division as it is.
+void name_apart(const TetMesh& mesh, std::span<TetBins> divisions);
+
+/// The division that formats use where a tet can only be in one: that with moduli, otherwise the first one.
+///
+/// \pre there is one
+std::size_t leading_division(std::span<const TetBins> divisions);
+
+/// Modulus of a value. A result that is not above 0 or not finite is no modulus.
+double modulus_of(const ModulusLaw& law, double value);
+
 /// Gives each bin the modulus of its mean.
 ///
 /// \throws UsageError if a modulus is not above 0 or not finite, with the bin and what to do
@@ -65,7 +78,8 @@ void set_moduli(const ModulusLaw& law, TetBins& bins);
 /// Number of each tet's bin within its material, as an integer cell field called `<field>_bin`.
 MeshField field_of_bins(const TetBins& bins);
 
-/// Table of the bins as comma-separated values, with a header line.
-std::string table_of_bins(const TetMesh& mesh, const TetBins& bins);
+/// Table of the bins as comma-separated values, with a header line. The bins of several divisions are listed
+/// one after the other, with a column for the name of the values.
+std::string table_of_bins(const TetMesh& mesh, std::span<const TetBins> divisions);
 
 }  // namespace tetwright

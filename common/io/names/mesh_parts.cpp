@@ -87,8 +87,10 @@ MeshParts mesh_parts(const TetMesh& mesh, const NameRules& rules) {
   return parts;
 }
 
-std::vector<BinPart> parts_of_bins(const TetBins& bins, const std::vector<MeshParts::Material>& materials,
-                                   const NameRules& rules) {
+std::vector<BinDivision> parts_of_bins(std::span<const TetBins> divisions,
+                                       const std::vector<MeshParts::Material>& materials,
+                                       const NameRules& rules) {
+  if (divisions.empty()) return {};
   UniqueNames names(rules.form, rules.ignore_case);
   std::int64_t last = 0;
   for (const MeshParts::Material& m : materials) {
@@ -97,18 +99,27 @@ std::vector<BinPart> parts_of_bins(const TetBins& bins, const std::vector<MeshPa
   }
   std::set<std::int64_t> numbers;
   for (const MeshParts::Material& m : materials) numbers.insert(m.number);
+  std::int64_t all = 0;
+  for (const TetBins& bins : divisions) all += static_cast<std::int64_t>(bins.bins.size());
   // After those of the materials, if there is room.
   const std::int64_t most = rules.max_number > 0 ? rules.max_number : std::numeric_limits<MaterialTag>::max();
-  std::int64_t number = last <= most - static_cast<std::int64_t>(bins.bins.size()) ? last : 0;
-  std::vector<BinPart> parts;
-  for (const ValueBin& bin : bins.bins) {
-    do ++number;
-    while (numbers.contains(number));
-    parts.push_back({&bin, number, names.add(bin.name), {}});
-  }
-  for (std::size_t t = 0; t < bins.of_tets.size(); ++t)
-    parts[bins.of_tets[t]].tets.push_back(static_cast<Index>(t));
-  return parts;
+  std::int64_t number = last <= most - all ? last : 0;
+  std::vector<BinDivision> result;
+  const auto add = [&](const TetBins& bins) {
+    BinDivision& division = result.emplace_back(BinDivision{&bins, {}});
+    for (const ValueBin& bin : bins.bins) {
+      do ++number;
+      while (numbers.contains(number));
+      division.parts.push_back({&bin, number, names.add(bin.name), {}});
+    }
+    for (std::size_t t = 0; t < bins.of_tets.size(); ++t)
+      division.parts[bins.of_tets[t]].tets.push_back(static_cast<Index>(t));
+  };
+  const std::size_t leading = leading_division(divisions);
+  add(divisions[leading]);
+  for (std::size_t d = 0; d < divisions.size(); ++d)
+    if (d != leading) add(divisions[d]);
+  return result;
 }
 
 std::string comment_on_bin(const ValueBin& bin, const std::string& field) {

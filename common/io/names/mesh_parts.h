@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -67,11 +68,19 @@ struct BinPart {
   std::vector<Index> tets;  ///< ascending
 };
 
-/// Bins with names and numbers that the format can hold.
+/// A division of the tets into bins.
+struct BinDivision {
+  const TetBins* bins;
+  std::vector<BinPart> parts;
+};
+
+/// Bins with names and numbers that the format can hold, unique among all divisions. The leading division
+/// (see leading_division()) is the first one.
 ///
 /// \param materials of the same mesh in the same format
-std::vector<BinPart> parts_of_bins(const TetBins& bins, const std::vector<MeshParts::Material>& materials,
-                                   const NameRules& rules);
+std::vector<BinDivision> parts_of_bins(std::span<const TetBins> divisions,
+                                       const std::vector<MeshParts::Material>& materials,
+                                       const NameRules& rules);
 
 /// Mean, bounds and number of tets of a bin, for a comment.
 std::string comment_on_bin(const ValueBin& bin, const std::string& field);

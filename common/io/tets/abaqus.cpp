@@ -3,6 +3,7 @@
 
 #include <array>
 #include <span>
+#include <vector>
 
 #include "common/io/names/mesh_parts.h"
 #include "common/io/text/fixed_width_number.h"
@@ -39,19 +40,22 @@ void write_elements(TextWriter& out, const MeshToWrite& written, const MeshParts
 }
 
 /// Writes the bins as element sets, and their moduli as sections.
-void write_bins(TextWriter& out, const TetBins& bins, const std::vector<MeshParts::Material>& materials) {
-  const std::vector<BinPart> parts = parts_of_bins(bins, materials, abaqus_names());
-  for (const BinPart& part : parts) {
-    out << "** " << part.name << ": " << comment_on_bin(*part.bin, bins.field) << '\n';
-    out << "*ELSET, ELSET=" << part.name << '\n';
-    write_numbers(out, part.tets);
-  }
-  if (!bins.poisson) return;
-  for (const BinPart& part : parts)
+void write_bins(TextWriter& out, std::span<const TetBins> bins,
+                const std::vector<MeshParts::Material>& materials) {
+  const std::vector<BinDivision> divisions = parts_of_bins(bins, materials, abaqus_names());
+  for (const BinDivision& division : divisions)
+    for (const BinPart& part : division.parts) {
+      out << "** " << part.name << ": " << comment_on_bin(*part.bin, division.bins->field) << '\n';
+      out << "*ELSET, ELSET=" << part.name << '\n';
+      write_numbers(out, part.tets);
+    }
+  // An element has one section.
+  if (divisions.empty() || !divisions.front().bins->poisson) return;
+  for (const BinPart& part : divisions.front().parts)
     out << "*MATERIAL, NAME=" << part.name << "\n*ELASTIC\n"
         << fixed_width_number(part.bin->modulus.value_or(0), number_width) << ", "
-        << fixed_width_number(*bins.poisson, number_width) << "\n*SOLID SECTION, ELSET=" << part.name
-        << ", MATERIAL=" << part.name << '\n';
+        << fixed_width_number(*divisions.front().bins->poisson, number_width)
+        << "\n*SOLID SECTION, ELSET=" << part.name << ", MATERIAL=" << part.name << '\n';
 }
 
 }  // namespace
@@ -76,7 +80,7 @@ void write_abaqus(const MeshToWrite& written, const ByteSink& sink) {
     out << '\n';
   }
   for (const MeshParts::Material& m : parts.materials) write_elements(out, written, m);
-  if (written.bins) write_bins(out, *written.bins, parts.materials);
+  write_bins(out, written.bins, parts.materials);
   const std::vector<TetFace> faces = faces_of_tets(mesh);
   for (const MeshParts::Surface& s : parts.surfaces) {
     out << "*SURFACE, NAME=" << s.name << ", TYPE=ELEMENT\n";

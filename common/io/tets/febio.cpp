@@ -23,10 +23,10 @@ std::string name_for_febio(const std::string& name) {
   return text;
 }
 
-/// Writes node numbers, from 1, separated by commas.
-class NodeList {
+/// Writes numbers of nodes or elements, from 1, separated by commas.
+class NumberList {
  public:
-  explicit NodeList(TextWriter& out) : out_(out) {}
+  explicit NumberList(TextWriter& out) : out_(out) {}
   void add(std::size_t zero_based) {
     if (!first_) out_ << ',';
     first_ = false;
@@ -46,15 +46,16 @@ struct FebioDomain {
   std::optional<double> modulus;  ///< std::nullopt: the material is not written
 };
 
-std::vector<FebioDomain> domains_of(const MeshToWrite& written, MeshParts& parts) {
+/// \param divisions those of the tets into bins; the first one makes the domains
+std::vector<FebioDomain> domains_of(const std::vector<BinDivision>& divisions, MeshParts& parts) {
   std::vector<FebioDomain> domains;
-  if (written.bins)
-    for (BinPart& part : parts_of_bins(*written.bins, parts.materials, febio_names()))
-      domains.push_back({std::move(part.name), std::move(part.tets),
-                         comment_on_bin(*part.bin, written.bins->field), part.bin->modulus});
-  else
+  if (divisions.empty())
     for (MeshParts::Material& m : parts.materials)
       domains.push_back({std::move(m.name), std::move(m.tets), {}, {}});
+  else
+    for (const BinPart& part : divisions.front().parts)
+      domains.push_back({part.name, part.tets, comment_on_bin(*part.bin, divisions.front().bins->field),
+                         part.bin->modulus});
   return domains;
 }
 
@@ -80,13 +81,22 @@ void write_elements_of(TextWriter& out, const MeshToWrite& written, const FebioD
       << xml_text(material.name) << "\">\n";
   for (const Index t : material.tets) {
     out << "<elem id=\"" << std::uint64_t{t} + 1 << "\">";
-    NodeList nodes(out);
+    NumberList nodes(out);
     for (const Index v : mesh.tets[t]) nodes.add(v);
     if (written.midside)
       for (const Index m : written.midside->of_tets[t]) nodes.add(mesh.points.size() + m);
     out << "</elem>\n";
   }
   out << "</Elements>\n";
+}
+
+/// Writes a bin of tets that belong to the domains of another division.
+void write_element_set(TextWriter& out, const BinPart& part, const std::string& field) {
+  out << "<!-- " << comment_text(comment_on_bin(*part.bin, field)) << " -->\n<ElementSet name=\""
+      << xml_text(part.name) << "\">";
+  NumberList tets(out);
+  for (const Index t : part.tets) tets.add(t);
+  out << "</ElementSet>\n";
 }
 
 void write_surface(TextWriter& out, const MeshToWrite& written, const MeshParts::Surface& surface) {
@@ -96,14 +106,14 @@ void write_surface(TextWriter& out, const MeshToWrite& written, const MeshParts:
   for (std::size_t i = 0; i < surface.faces.size(); ++i) {
     const std::size_t f = surface.faces[i];
     out << '<' << type << " id=\"" << i + 1 << "\">";
-    NodeList nodes(out);
+    NumberList nodes(out);
     for (const Index v : mesh.interfaces[f].ids) nodes.add(v);
     if (written.midside)
       for (const Index m : written.midside->of_faces[f]) nodes.add(mesh.points.size() + m);
     out << "</" << type << ">\n";
   }
   out << "</Surface>\n<NodeSet name=\"" << xml_text(surface.name) << "\">";
-  NodeList nodes(out);
+  NumberList nodes(out);
   for (const Index node :
        nodes_of_faces(mesh, surface.faces, written.midside ? &written.midside->of_faces : nullptr))
     nodes.add(node);
@@ -116,13 +126,14 @@ NameRules febio_names() { return {.form = name_for_febio, .surface_numbers = fal
 
 void write_febio(const MeshToWrite& written, const ByteSink& sink) {
   MeshParts parts = mesh_parts(written.mesh, febio_names());
-  const std::vector<FebioDomain> domains = domains_of(written, parts);
-  const bool moduli = written.bins && written.bins->poisson;
+  const std::vector<BinDivision> divisions = parts_of_bins(written.bins, parts.materials, febio_names());
+  const std::vector<FebioDomain> domains = domains_of(divisions, parts);
+  const bool moduli = !divisions.empty() && divisions.front().bins->poisson;
   TextWriter out(sink);
   out << "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<febio_spec version=\"4.0\">\n"
       << (moduli ? "<!-- Written by tetwright -->\n"
                  : "<!-- Written by tetwright: materials of the names of the domains are to be added -->\n");
-  if (moduli) write_materials(out, domains, *written.bins->poisson);
+  if (moduli) write_materials(out, domains, *divisions.front().bins->poisson);
   out << "<Mesh>\n<Nodes>\n";  // no name: it would define a node set, whose name might be taken
   for (std::size_t i = 0; i < written.nodes(); ++i) {
     const Vec3& p = written.node(i);
@@ -130,6 +141,8 @@ void write_febio(const MeshToWrite& written, const ByteSink& sink) {
   }
   out << "</Nodes>\n";
   for (const FebioDomain& domain : domains) write_elements_of(out, written, domain);
+  for (std::size_t d = 1; d < divisions.size(); ++d)
+    for (const BinPart& part : divisions[d].parts) write_element_set(out, part, divisions[d].bins->field);
   for (const MeshParts::Surface& s : parts.surfaces) write_surface(out, written, s);
   out << "</Mesh>\n<MeshDomains>\n";
   for (const FebioDomain& domain : domains)

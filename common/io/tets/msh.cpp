@@ -48,18 +48,19 @@ std::string write_msh(const MeshToWrite& written) {
   const MidsideNodes* midside = written.midside;
   std::string out = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n";
   const MshGroups groups(mesh);
-  // Each tet has one physical group: its bin, if there are bins, else its material.
+  // Each tet has one physical group: its bin of the leading division, if there are bins, else its material.
   std::map<MaterialTag, std::string> names = groups.material_names;
   std::vector<MaterialTag> of_tets;
-  if (written.bins) {
+  if (!written.bins.empty()) {
     names.clear();
     of_tets.resize(mesh.tets.size());
-    for (const BinPart& part : msh_bins(mesh, *written.bins)) {
+    const std::vector<BinDivision> divisions = msh_bins(mesh, written.bins);
+    for (const BinPart& part : divisions.front().parts) {
       names[static_cast<MaterialTag>(part.number)] = part.name;
       for (const Index t : part.tets) of_tets[t] = static_cast<MaterialTag>(part.number);
     }
   }
-  const std::vector<MaterialTag>& physical = written.bins ? of_tets : mesh.materials;
+  const std::vector<MaterialTag>& physical = written.bins.empty() ? mesh.materials : of_tets;
   if (!names.empty() || !groups.face_names.empty()) {
     out += "$PhysicalNames\n";
     append_number(out, groups.face_names.size() + names.size());

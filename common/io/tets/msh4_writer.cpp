@@ -40,7 +40,7 @@ class Msh4Writer {
         numbers_(out_, binary),
         binary_(binary),
         physical_(msh4_volumes(mesh_)) {
-    if (written.bins) bins_ = msh_bins(mesh_, *written.bins);
+    bins_ = msh_bins(mesh_, written.bins);
     collect_entities();
     classify_nodes();
   }
@@ -48,7 +48,8 @@ class Msh4Writer {
   void write() {
     numbers_.begin_file();
     std::map<std::int64_t, std::string> names_of_bins;
-    for (const BinPart& bin : bins_) names_of_bins[bin.number] = bin.name;
+    for (const BinDivision& division : bins_)
+      for (const BinPart& bin : division.parts) names_of_bins[bin.number] = bin.name;
     write_msh4_groups(out_, groups_, physical_, names_of_bins);
     write_entities();
     write_nodes();
@@ -71,23 +72,41 @@ class Msh4Writer {
           surfaces.try_emplace(number, Entity{surface_dimension, number, {number}, {}, {}, {}}).first->second;
       surface.elements.push_back(i);
       // A sheet bounds no volume, and faces between bins, which bound theirs, are not in the file.
-      if (t.is_sheet() || written_.bins) continue;
+      if (t.is_sheet() || !bins_.empty()) continue;
       volume(volumes, t.material).bounds.insert(number);
       if (t.other) volume(volumes, *t.other).bounds.insert(-number);
     }
-    if (!written_.bins)
+    if (bins_.empty())
       for (std::size_t t = 0; t < mesh_.tets.size(); ++t)
         volume(volumes, mesh_.materials[t]).elements.push_back(t);
-    for (BinPart& bin : bins_)
-      volumes[bin.number] = {volume_dimension,
-                             bin.number,
-                             {physical_.at(bin.bin->material), bin.number},
-                             {bin.tets.begin(), bin.tets.end()},
-                             {},
-                             {}};
+    else
+      add_volumes_of_bins(volumes);
     for (auto* entities : {&surfaces, &volumes})
       for (auto& [number, entity] : *entities) entities_.push_back(std::move(entity));
     surfaces_ = surfaces.size();
+  }
+
+  /// Adds a volume for each combination of bins that a tet is in, which is in the groups of all of them.
+  void add_volumes_of_bins(std::map<std::int64_t, Entity>& volumes) const {
+    std::map<std::vector<std::uint32_t>, std::int64_t> number_of;
+    std::vector<std::uint32_t> key(bins_.size());
+    const auto key_of = [&](std::size_t t) -> const std::vector<std::uint32_t>& {
+      for (std::size_t d = 0; d < bins_.size(); ++d) key[d] = bins_[d].bins->of_tets[t];
+      return key;
+    };
+    for (std::size_t t = 0; t < mesh_.tets.size(); ++t) number_of.try_emplace(key_of(t), 0);
+    // With one division a volume has the number of its bin.
+    const std::vector<BinPart>& leading = bins_.front().parts;
+    std::int64_t last = leading.front().number - 1;
+    for (auto& [bins, number] : number_of) {
+      number = bins_.size() == 1 ? leading[bins[0]].number : ++last;
+      Entity entity{volume_dimension, number, {physical_.at(leading[bins[0]].bin->material)}, {}, {}, {}};
+      for (std::size_t d = 0; d < bins_.size(); ++d)
+        entity.physical.push_back(bins_[d].parts[bins[d]].number);
+      volumes.emplace(number, std::move(entity));
+    }
+    for (std::size_t t = 0; t < mesh_.tets.size(); ++t)
+      volumes.at(number_of.at(key_of(t))).elements.push_back(t);
   }
 
   Entity& volume(std::map<std::int64_t, Entity>& volumes, MaterialTag tag) const {
@@ -213,7 +232,7 @@ class Msh4Writer {
   Msh4Numbers numbers_;
   bool binary_;
   std::map<std::int64_t, std::int64_t> physical_;  ///< physical groups by material
-  std::vector<BinPart> bins_;                      ///< each is a volume
+  std::vector<BinDivision> bins_;                  ///< their combinations are volumes
   std::vector<Entity> entities_;                   ///< surfaces, then volumes
   std::size_t surfaces_ = 0;
 };

@@ -53,9 +53,9 @@ MshGroups::MshGroups(const TetMesh& mesh)
       material_names(material_names_to_write(mesh.material_names)),
       face_names(group_names_to_write(faces, material_names)) {}
 
-std::vector<BinPart> msh_bins(const TetMesh& mesh, const TetBins& bins) {
+std::vector<BinDivision> msh_bins(const TetMesh& mesh, std::span<const TetBins> divisions) {
   return parts_of_bins(
-      bins,
+      divisions,
       names_of_parts(mesh, {.form = msh_name, .max_number = std::numeric_limits<MaterialTag>::max()})
           .materials,
       {.form = msh_name, .max_number = std::numeric_limits<MaterialTag>::max()});

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,7 +25,7 @@ struct MshGroups {
 };
 
 /// Bins as physical groups, with numbers that no material has.
-std::vector<BinPart> msh_bins(const TetMesh& mesh, const TetBins& bins);
+std::vector<BinDivision> msh_bins(const TetMesh& mesh, std::span<const TetBins> divisions);
 
 /// Groups for name_changes(): tags of materials are kept; comments give those that the format cannot hold.
 MeshParts msh_parts(const TetMesh& mesh);

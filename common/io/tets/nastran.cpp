@@ -64,14 +64,27 @@ void write_tets_of(TextWriter& out, const MeshToWrite& written, std::int64_t num
   }
 }
 
+/// Writes bins of tets that belong to other properties as sets.
+/// \param first number of the first set
+void write_sets_of_bins(TextWriter& out, const BinDivision& division, std::size_t first) {
+  for (const BinPart& part : division.parts) {
+    out << "$ set " << first << ": " << part.name << ", tets with the "
+        << comment_on_bin(*part.bin, division.bins->field) << '\n';
+    std::vector<std::size_t> fields = {first++};
+    for (const Index t : part.tets) fields.push_back(std::size_t{t} + 1);
+    write_entry(out, "SET1", fields);
+  }
+}
+
 void write_tets(TextWriter& out, const MeshToWrite& written, const MeshParts& parts) {
-  if (!written.bins) {
+  const std::vector<BinDivision> divisions = parts_of_bins(written.bins, parts.materials, nastran_names());
+  if (divisions.empty()) {
     for (const MeshParts::Material& m : parts.materials)
       write_tets_of(out, written, m.number, m.name, m.tets);
     return;
   }
-  const TetBins& bins = *written.bins;
-  for (const BinPart& part : parts_of_bins(bins, parts.materials, nastran_names())) {
+  const TetBins& bins = *divisions.front().bins;
+  for (const BinPart& part : divisions.front().parts) {
     out << "$ " << part.name << ": " << comment_on_bin(*part.bin, bins.field) << '\n';
     write_tets_of(out, written, part.number, part.name, part.tets);
     if (!bins.poisson) continue;
@@ -82,6 +95,13 @@ void write_tets(TextWriter& out, const MeshToWrite& written, const MeshParts& pa
     out << padded("MAT1*", small_field) << padded(std::to_string(part.number), large_field)
         << field(part.bin->modulus.value_or(0)) << padded("", large_field) << field(*bins.poisson)
         << "*\n*\n";
+  }
+  std::int64_t last = 0;  // sets of nodes have the numbers of surfaces
+  for (const MeshParts::Surface& s : parts.surfaces) last = std::max(last, s.number);
+  auto number = static_cast<std::size_t>(last) + 1;
+  for (std::size_t d = 1; d < divisions.size(); ++d) {
+    write_sets_of_bins(out, divisions[d], number);
+    number += divisions[d].parts.size();
   }
 }
 
@@ -119,9 +139,9 @@ void write_nastran(const MeshToWrite& written, const ByteSink& sink) {
                       " nodes or tets; write another format");
   const MeshParts parts = mesh_parts(written.mesh, nastran_names());
   TextWriter out(sink);
-  out << (written.bins && written.bins->poisson
-              ? "$ Written by tetwright\n"
-              : "$ Written by tetwright: a MAT1 with the number of each PSOLID is to be added\n")
+  const bool moduli = !written.bins.empty() && written.bins[leading_division(written.bins)].poisson;
+  out << (moduli ? "$ Written by tetwright\n"
+                 : "$ Written by tetwright: a MAT1 with the number of each PSOLID is to be added\n")
       << "BEGIN BULK\n";
   write_points(out, written);
   write_tets(out, written, parts);

@@ -38,16 +38,25 @@ class RawVolumeSource final : public VoxelSource {
 
  protected:
   void read_box(const VoxelIndex& low, const VoxelIndex& high, std::span<MaterialTag> out) const override {
-    read_numbers(low, high, 0, out.data());
+    read_numbers<MaterialTag>(low, high, 0, {&out, 1});
   }
   void read_box_of_values(const VoxelIndex& low, const VoxelIndex& high, std::int64_t channel,
                           std::span<float> out) const override {
-    read_numbers(low, high, channel, out.data());
+    read_numbers<float>(low, high, channel, {&out, 1});
+  }
+  void read_box_of_channels(const VoxelIndex& low, const VoxelIndex& high, std::int64_t first,
+                            std::span<const std::span<float>> out) const override {
+    if (channel_stride_ < strides_[0])
+      read_numbers<float>(low, high, first, out);  // the numbers of a voxel follow each other
+    else
+      VoxelSource::read_box_of_channels(low, high, first, out);
   }
 
  private:
+  /// Reads the channels from `first` on, whose numbers are between those of two voxels if there are several.
   template <class Value>
-  void read_numbers(const VoxelIndex& low, const VoxelIndex& high, std::int64_t channel, Value* to) const {
+  void read_numbers(const VoxelIndex& low, const VoxelIndex& high, std::int64_t first,
+                    std::span<const std::span<Value>> out) const {
     // Voxels at equal distances in the file: part of a row, rows, or slices.
     const VoxelIndex& size = grid().size;
     const auto joined = [&](std::size_t k) {
@@ -61,20 +70,27 @@ class RawVolumeSource final : public VoxelSource {
     if (slices) run *= static_cast<std::size_t>(high[2] - low[2]);
     const std::size_t piece =
         std::min<std::size_t>(run, std::max<std::size_t>(raw_piece_bytes / strides_[0], 1));
-    const ByteBuffer bytes((piece - 1) * strides_[0] + each_);
-    const std::uint64_t begin = offset_ + static_cast<std::uint64_t>(channel) * channel_stride_;
+    // From the first channel of a voxel to the end of the last one.
+    const std::size_t voxel_bytes_read = (out.size() - 1) * channel_stride_ + each_;
+    const ByteBuffer bytes((piece - 1) * strides_[0] + voxel_bytes_read);
+    const std::uint64_t begin = offset_ + static_cast<std::uint64_t>(first) * channel_stride_;
+    std::size_t written = 0;
     for (int z = low[2]; z < z_end; ++z)
       for (int y = low[1]; y < y_end; ++y)
         for (std::size_t done = 0; done < run; done += piece) {
           const std::size_t n = std::min(piece, run - done);
           file_.read(begin + offset_of(low[0], y, z) + done * strides_[0], bytes.data.get(),
-                     (n - 1) * strides_[0] + each_);
-          const std::size_t bad = convert_row(bytes.data.get(), strides_[0], n, format_, to);
-          if (bad != n)
-            throw InputError(file_.name() + ": " +
-                             bad_voxel<Value>(name_of({low[0], y, z}, done + bad, channel),
-                                              bytes.data.get() + bad * strides_[0], format_));
-          to += n;
+                     (n - 1) * strides_[0] + voxel_bytes_read);
+          for (std::size_t c = 0; c < out.size(); ++c) {
+            const char* from = bytes.data.get() + c * channel_stride_;
+            const std::size_t bad = convert_row(from, strides_[0], n, format_, out[c].data() + written);
+            if (bad != n)
+              throw InputError(
+                  file_.name() + ": " +
+                  bad_voxel<Value>(name_of({low[0], y, z}, done + bad, first + static_cast<std::int64_t>(c)),
+                                   from + bad * strides_[0], format_));
+          }
+          written += n;
         }
   }
 

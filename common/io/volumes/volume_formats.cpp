@@ -20,6 +20,7 @@
 #include "common/lower_case.h"
 #include "tetwright/error.h"
 #include "tetwright/files.h"
+#include "tetwright/resources.h"
 
 namespace tetwright {
 
@@ -82,6 +83,15 @@ EncodedVolume encoded_volume(const VolumeFormat& format, std::string_view bytes,
       format.headerless ? encoded_headerless(bytes, name, options) : format.read(bytes, name, others, use);
   if (options.spacing) set_spacing(volume.grid, *options.spacing);
   return volume;
+}
+
+/// Reads a file, which is in memory beside its voxels.
+std::string read_volume_file(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_regular_file(path, error))
+    require_memory(static_cast<double>(std::filesystem::file_size(path, error)), "the file " + path,
+                   "crop the volume or make it coarser");
+  return read_whole_file(path);
 }
 
 /// Whether a folder of the path is a zarr hierarchy by its name.
@@ -168,7 +178,8 @@ LabelVolume read_whole_volume(const VolumeFormat& format, const std::string& pat
   if (const auto source = open_by_boxes(format, path, whole_volume_cache, VoxelUse::labels, options))
     return read_all(*source, path);
   const std::string first = format.header ? with_extension(path, format.header) : path;
-  const std::string bytes = read_whole_file(first);
+  const std::string bytes = read_volume_file(first);
+  const HeldMemory held(static_cast<double>(bytes.size()));
   return labels_of(encoded_volume(format, bytes, first, VoxelUse::labels, options, read_whole_file));
 }
 
@@ -177,7 +188,8 @@ ImageVolume read_whole_image(const VolumeFormat& format, const std::string& path
   if (const auto source = open_by_boxes(format, path, whole_volume_cache, VoxelUse::image, options))
     return read_all_values(*source, path);
   const std::string first = format.header ? with_extension(path, format.header) : path;
-  const std::string bytes = read_whole_file(first);
+  const std::string bytes = read_volume_file(first);
+  const HeldMemory held(static_cast<double>(bytes.size()));
   return image_of(encoded_volume(format, bytes, first, VoxelUse::image, options, read_whole_file));
 }
 

@@ -7,11 +7,11 @@ namespace tetwright {
 
 ImageVolume read_all_values(const VoxelSource& source, const std::string& file) {
   return {source.grid(),
-          read_whole<float>(
-              source, static_cast<std::size_t>(source.channels()), file, "values",
-              [&](const VoxelIndex& low, const VoxelIndex& high, std::size_t channel, std::span<float> out) {
-                source.read_values(low, high, static_cast<std::int64_t>(channel), out);
-              })};
+          read_whole<float>(source, static_cast<std::size_t>(source.channels()), file, "values",
+                            [&](const VoxelIndex& low, const VoxelIndex& high, std::size_t first,
+                                std::span<const std::span<float>> out) {
+                              source.read_channels(low, high, static_cast<std::int64_t>(first), out);
+                            })};
 }
 
 }  // namespace tetwright

@@ -26,11 +26,24 @@ class VoxelSource : public LabelSource {
     read_box_of_values(low, high, channel, out);
   }
 
+  /// Reads the values of several channels at once, as read_values() does.
+  /// \param first the first channel
+  /// \param out one for each channel from `first` on
+  void read_channels(const VoxelIndex& low, const VoxelIndex& high, std::int64_t first,
+                     std::span<const std::span<float>> out) const {
+    read_box_of_channels(low, high, first, out);
+  }
+
  protected:
   /// \param channels 1 if labels are read
   VoxelSource(LabelGrid grid, std::int64_t channels) : LabelSource(std::move(grid)), channels_(channels) {}
   virtual void read_box_of_values(const VoxelIndex& low, const VoxelIndex& high, std::int64_t channel,
                                   std::span<float> out) const = 0;
+  /// Sources whose channels are stored together read them once.
+  virtual void read_box_of_channels(const VoxelIndex& low, const VoxelIndex& high, std::int64_t first,
+                                    std::span<const std::span<float>> out) const {
+    for (const std::span<float>& values : out) read_box_of_values(low, high, first++, values);
+  }
 
  private:
   std::int64_t channels_;

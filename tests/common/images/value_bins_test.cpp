@@ -95,12 +95,34 @@ TEST(ValueBins, TheTableHasALineForEachBin) {
   TetMesh mesh = tets_of({1, 1});
   mesh.material_names = {{1, "bone, left"}};
   TetBins bins = bin_tets(mesh, "d", {1, 3}, {.edges = {2}});
-  EXPECT_EQ(table_of_bins(mesh, bins),
+  EXPECT_EQ(table_of_bins(mesh, {&bins, 1}),
             "name,material,bin,low,high,tets,volume,mean\n"
             "\"bone, left_001\",\"bone, left\",1,,2,1,0.16666666666666666,1\n"
             "\"bone, left_002\",\"bone, left\",2,2,,1,0.3333333333333333,3\n");
   set_moduli({.factor = 10, .exponent = 1}, bins);
-  EXPECT_NE(table_of_bins(mesh, bins).find(",3,30,0.3\n"), std::string::npos);
+  EXPECT_NE(table_of_bins(mesh, {&bins, 1}).find(",3,30,0.3\n"), std::string::npos);
+}
+
+TEST(ValueBins, OfSeveralDivisionsHaveNamesOfTheirOwn) {
+  TetMesh mesh = tets_of({1, 1});
+  mesh.material_names = {{1, "bone"}};
+  std::vector<TetBins> both = {bin_tets(mesh, "hu", {1, 3}, {.edges = {2}}),
+                               bin_tets(mesh, "t2", {5, 5}, {.count = 3})};
+  name_apart(mesh, std::span(both).first(1));
+  EXPECT_EQ(both[0].bins[0].name, "bone_001");
+  name_apart(mesh, both);
+  EXPECT_EQ(both[0].bins[1].name, "bone_hu_002");
+  EXPECT_EQ(both[1].bins[0].name, "bone_t2_001");
+  EXPECT_EQ(leading_division(both), 0u);
+  set_moduli({.factor = 10, .exponent = 1}, both[1]);
+  EXPECT_EQ(leading_division(both), 1u);
+  const std::string table = table_of_bins(mesh, both);
+  EXPECT_EQ(table.rfind("name,values,material,bin,low,high,tets,volume,mean,modulus,poisson\n"
+                        "bone_hu_001,hu,bone,1,,2,1,0.16666666666666666,1,,\n",
+                        0),
+            0u)
+      << table;
+  EXPECT_NE(table.find("bone_t2_001,t2,bone,1,5,5,2,0.5,5,50,0.3\n"), std::string::npos) << table;
 }
 
 }  // namespace tetwright

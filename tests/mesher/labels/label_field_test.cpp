@@ -216,6 +216,31 @@ TEST(LabelField, VoxelsWithAnInterfaceAreFound) {
     }
 }
 
+TEST(LabelField, SmallCellsWithAnInterfaceAreThoseWhosePointsHaveSeveralRegions) {
+  for (const Eigen::Matrix3d& directions : all_directions())
+    for (const double cell : {0.6, 0.5, 0.3, 0.25, 0.1}) {
+      const LabelInput labels = noise({4, 5, 4}, 3, directions);
+      const auto field = make_field(labels, cell * voxel_size(labels));
+      const std::vector<MortonKey> keys = field->interface_voxels();
+      const auto sampler = field->sampler();
+      std::vector<MortonKey> expected;
+      const std::array<int, 3>& n = field->frame().box;
+      for (int z = 0; z < n[2]; ++z)
+        for (int y = 0; y < n[1]; ++y)
+          for (int x = 0; x < n[0]; ++x) {
+            const RegionIndex there = sampler->nearest_at_voxel(x, y, z).region;
+            bool mixed = false;
+            for (int k = 1; k < 27 && !mixed; ++k) {
+              const Vec3 half(k % 3, k / 3 % 3, k / 9);
+              mixed = sampler->nearest(Vec3(x, y, z) + 0.5 * half).region != there;
+            }
+            if (mixed) expected.push_back(morton_encode(x, y, z));
+          }
+      std::sort(expected.begin(), expected.end());
+      EXPECT_EQ(keys, expected) << "cell " << cell;
+    }
+}
+
 TEST(LabelField, LeavesOfTheBandHoldAllThatIsWithinIt) {
   const LabelInput labels = make_labels({30, 28, 26}, [](int x, int y, int z) {
     return (Vec3(x, y, z) - Vec3(14, 13, 12)).norm() < 9 ? (x < 14 ? 1 : 2) : 0;

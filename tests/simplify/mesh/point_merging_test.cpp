@@ -326,6 +326,19 @@ TEST(PointMerging, LeavesFrozenPointsAlone) {
   EXPECT_EQ(editable.live_tets(), mesh.tets.size());
 }
 
+TEST(PointMerging, EndsWithTheDeadlineAndChangesNothing) {
+  const TetMesh mesh = grid_mesh(8);
+  EditableMesh editable{TetMesh(mesh), "test"};
+  Progress progress;
+  progress.set_deadline(Progress::Clock::now());
+  EXPECT_THROW(merge_points(editable, lax, &progress), OutOfTime);
+  EXPECT_EQ(editable.live_tets(), mesh.tets.size());
+  EXPECT_TRUE(editable.links_consistent());
+  progress.set_deadline(Progress::no_deadline);
+  ASSERT_TRUE(merge_points(editable, lax, &progress));
+  EXPECT_LT(editable.live_tets(), mesh.tets.size());
+}
+
 TEST(PointMerging, IsNotUsedWhereSurfacesIntersect) {
   SimplifyOptions options;
   options.target_tets = 2000;

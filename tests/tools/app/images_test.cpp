@@ -99,6 +99,11 @@ TEST_F(Images, ProbabilityMapsAreMaterials) {
   const double half = volume("left");
   EXPECT_EQ(prepare(both + " --outside-probability 0.2").status, 0);
   EXPECT_GT(volume("left"), 1.1 * half);
+  for (const char* p : {"-0.1", "1.5", "nan"}) {
+    const Answer none = prepare(both + " --outside-probability=" + p);
+    EXPECT_EQ(none.status, 2);
+    EXPECT_NE(none.err.find(p), std::string::npos) << none.err;
+  }
   // Distances are no probabilities.
   const std::string distances = image("a", ball(4, 5)) + " " + image("b", ball(4, 14));
   const Answer refused = prepare(distances);
@@ -107,6 +112,10 @@ TEST_F(Images, ProbabilityMapsAreMaterials) {
   EXPECT_EQ(prepare(distances + " --iso 0").status, 0);
   EXPECT_NEAR(volume("a"), ball_volume(4), 0.06 * ball_volume(4));
   EXPECT_EQ(prepare(distances + " --iso a=0 --iso b=0").status, 2);
+  const Answer same =
+      prepare("--material a=" + path("a.nhdr") + " --material a=" + path("b.nhdr") + " --iso 0");
+  EXPECT_EQ(same.status, 2);
+  EXPECT_NE(same.err.find("b.nhdr are two images called 'a'"), std::string::npos) << same.err;
 }
 
 TEST_F(Images, SmoothingIsAsked) {

@@ -3,6 +3,7 @@
 // --time-limit and --memory-limit.
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/program.h"
@@ -135,6 +136,25 @@ TEST_F(Limits, MemoryMakesCellsLarger) {
   ASSERT_EQ(run("sample organs -o " + (f / "v.nrrd")).status, 0);
   expect_refused("mesh " + (f / "v.nrrd") + " -o " + (f / "v.vtu") + " --voxel-size 0.2 --memory-limit 0.075",
                  5, {"GB are available"});
+}
+
+TEST_F(Limits, MemoryIsThatOfImagesToo) {
+  // 270^3 voxels, all 0: 79 MB as floats.
+  for (const char* file : {"a.raw", "b.raw"}) {
+    write_file_atomically(f / file, "");
+    std::filesystem::resize_file(f / file, 270 * 270 * 270);
+  }
+  ASSERT_EQ(run("sample organs -o " + (f / "v.nrrd")).status, 0);
+  const std::string call = "mesh " + (f / "v.nrrd") + " -o " + (f / "v.vtu") + " --memory-limit 0.12";
+  const std::string header =
+      "NRRD0004\ntype: uchar\ndimension: 3\nsizes: 270 270 270\nencoding: raw\ndata file: ";
+  write_file_atomically(f / "a.nhdr", header + "a.raw\n");
+  write_file_atomically(f / "b.nhdr", header + "b.raw\n");
+  expect_refused(call + " --values a=" + (f / "a.nhdr") + " --values b=" + (f / "b.nhdr"), 5,
+                 {"the values of " + (f / "b.nhdr"), "beside the 0.0733", "GB that images and masks take"});
+  expect_refused("mesh " + (f / "a.nhdr") + " " + (f / "b.nhdr") + " --iso 1 -o " + (f / "v.vtu") +
+                     " --memory-limit 0.12",
+                 5, {"the values of " + (f / "b.nhdr"), "beside the 0.0733"});
 }
 
 TEST_F(Limits, AreNumbersAboveZero) {

@@ -92,6 +92,22 @@ TEST_F(Masks, HaveTheNamesOfTheirMaterials) {
   EXPECT_NE(materials.dump().find("\"bone\""), std::string::npos) << materials;
 }
 
+TEST_F(Masks, OfOneNameAreRefused) {
+  std::filesystem::create_directory(folder_ / "others");
+  std::filesystem::copy_file(path("masks/part2.nrrd"), path("others/part1.nrrd"));
+  const std::string both = path("masks/part1.nrrd") + " " + path("others/part1.nrrd");
+  const Answer a = prepare(both);
+  EXPECT_EQ(a.status, 2);
+  for (const std::string& part :
+       {path("masks/part1.nrrd") + " and " + path("others/part1.nrrd"),
+        std::string("two masks called 'part1'"), "--material part1_2=" + path("others/part1.nrrd")})
+    EXPECT_NE(a.err.find(part), std::string::npos) << part << "\n" << a.err;
+  EXPECT_EQ(prepare("--material left=" + path("masks/part1.nrrd") +
+                    " --material right=" + path("others/part1.nrrd"))
+                .status,
+            0);
+}
+
 TEST_F(Masks, ThatOverlapAreReported) {
   write_mask("all.nrrd", [](MaterialTag label) { return label != 0; });
   const std::string both = path("all.nrrd") + " " + path("masks/part2.nrrd");

@@ -200,7 +200,7 @@ TEST_F(Values, OfAnImageElsewhereAreRefused) {
 TEST_F(Values, DivideTheTetsIntoBins) {
   const std::string bins = "--values hu=" + path("ramp.nrrd") + " --bins hu=4";
   ASSERT_EQ(prepare(bins).status, 0);
-  const nlohmann::json all = stats().at("bins");
+  const nlohmann::json all = stats().at("bins").at(0);
   EXPECT_EQ(all.at("values"), "hu");
   ASSERT_EQ(all.at("each").size(), 8u);
   std::size_t tets = 0;
@@ -228,8 +228,9 @@ TEST_F(Values, DivideTheTetsIntoBins) {
   EXPECT_EQ(text.find("NAME=bone_001_"), std::string::npos);
   EXPECT_NE(contents(path("out_bins.csv")).find(",modulus,poisson\n"), std::string::npos);
   EXPECT_NEAR(
-      stats().at("bins").at("each").at(0).at("modulus").get<double>(),
-      6850 * std::pow(0.001 * stats().at("bins").at("each").at(0).at("mean").get<double>() + 0.05, 1.49),
+      stats().at("bins").at(0).at("each").at(0).at("modulus").get<double>(),
+      6850 *
+          std::pow(0.001 * stats().at("bins").at(0).at("each").at(0).at("mean").get<double>() + 0.05, 1.49),
       1e-6);
   const Answer medit = prepare(bins, "out.mesh");
   EXPECT_NE(medit.err.find("8 sets of bins (not written; .mesh cannot hold them, but the table can)"),
@@ -237,6 +238,77 @@ TEST_F(Values, DivideTheTetsIntoBins) {
       << medit.err;
   const Answer vtu = prepare(bins + " --modulus hu=1,1");
   EXPECT_NE(vtu.err.find("8 elastic moduli of bins (not written"), std::string::npos) << vtu.err;
+}
+
+TEST_F(Values, DivideTheTetsOfEachMaterialByEachImage) {
+  const std::string more = "--values hu=" + path("ramp.nrrd") + " --values ct=" + path("ct.nrrd") +
+                           " --bins ct=0.0 --bins hu=3 --modulus hu=1,1 --min-modulus 1";
+  const Answer a = prepare(more, "out.inp");
+  ASSERT_EQ(a.status, 0) << a.err;
+  ASSERT_EQ(stats().at("bins").size(), 2u);
+  EXPECT_EQ(stats().at("bins").at(0).at("values"), "ct");
+  EXPECT_FALSE(stats().at("bins").at(0).contains("poisson"));
+  EXPECT_EQ(stats().at("bins").at(1).at("each").at(0).at("name"), "bone_hu_001");
+  const std::string text = contents(path("out.inp"));
+  for (const char* part : {"*ELSET, ELSET=bone_ct_001\n", "*ELSET, ELSET=flesh_hu_003\n",
+                           "*SOLID SECTION, ELSET=bone_hu_001, MATERIAL=bone_hu_001\n"})
+    EXPECT_NE(text.find(part), std::string::npos) << part;
+  EXPECT_EQ(text.find("MATERIAL=bone_ct"), std::string::npos);
+  EXPECT_NE(contents(path("out_bins.csv")).find("\nbone_hu_001,hu,bone,1,"), std::string::npos);
+  ASSERT_EQ(prepare(more).status, 0);
+  EXPECT_TRUE(field(mesh().cell_fields, "hu_bin") && field(mesh().cell_fields, "ct_bin"));
+  const Answer msh = prepare(more + " --output-format msh22", "out.msh");
+  EXPECT_NE(msh.err.find("sets of bins of ct (not written; an element is in one group"), std::string::npos)
+      << msh.err;
+}
+
+TEST_F(Values, ImpossibleOnesEndTheCallBeforeItMeshes) {
+  const auto stage_of_error = [&](const std::string& more, int status, const std::string& text) {
+    const Answer a = prepare(more, "no.inp");
+    EXPECT_EQ(a.status, status) << more << a.err;
+    EXPECT_NE(a.err.find(text), std::string::npos) << a.err;
+    return stats().at("error").at("stage").get<std::string>();
+  };
+  const std::string values = "--values hu=" + path("ramp.nrrd");
+  EXPECT_EQ(stage_of_error(values + " --bins hu=3 --modulus hu=1,1,0,-5", 2, "have moduli from 0 to 0"),
+            "read");
+  // Only voxels of the labels count, whose values are above 0 or below.
+  EXPECT_EQ(stage_of_error("--values hu=" + path("ct.nrrd") + " --labels 2 --values-mask labels --bins hu=2" +
+                               " --modulus hu=1,1",
+                           2, "from -1000 to -1000"),
+            "read");
+  write_image("empty.nrrd", [](const Vec3&) { return 0; });
+  EXPECT_EQ(stage_of_error(values + " --values-mask " + path("empty.nrrd"), 3, "has no voxel other than 0"),
+            "read images");
+  LabelVolume far = volume_of([](const Vec3&) { return 1; });
+  far.origin.x() += 100;
+  write_label_volume(far, path("far.nrrd"));
+  EXPECT_EQ(stage_of_error(values + " --values-mask " + path("far.nrrd"), 3, "has no voxel that counts"),
+            "read");
+  // Some values have no modulus: whether a bin has such a mean is known after meshing.
+  const Answer some = prepare(values + " --bins hu=3 --modulus hu=1,1,1,-400", "no.inp");
+  EXPECT_EQ(some.status, 2);
+  EXPECT_NE(some.err.find("bone_001"), std::string::npos) << some.err;
+  EXPECT_NE((some.out + some.err).find("have moduli from 0 to "), std::string::npos) << some.out << some.err;
+}
+
+TEST_F(Values, DoNotReplaceFieldsOfOtherNames) {
+  const std::string values = "--values q=" + path("ramp.nrrd") + " --values q_bin=" + path("ct.nrrd");
+  EXPECT_EQ(prepare(values).status, 0);
+  const Answer both = prepare(values + " --bins q=3");
+  EXPECT_EQ(both.status, 2);
+  EXPECT_NE(both.err.find("'q_bin' would belong both"), std::string::npos) << both.err;
+  // Nor those of a mesh, unless it has the values, too.
+  ASSERT_EQ(prepare("--values q_bin=" + path("ct.nrrd")).status, 0);
+  for (const std::string& command :
+       {"values " + path("out.vtu") + " q=" + path("ramp.nrrd"),
+        "simplify " + path("out.vtu") + " --target-tets 400 --quiet --values q=" + path("ramp.nrrd")})
+    expect_refused(command + " --bins q=3 -o " + path("no.vtu"), 2, {"has a field 'q_bin' already", "q_2="});
+  ASSERT_EQ(prepare("--values q=" + path("ramp.nrrd") + " --bins q=3").status, 0);
+  const Answer again =
+      run("values " + path("out.vtu") + " q=" + path("ct.nrrd") + " --bins q=2 -o " + path("out.vtu"));
+  EXPECT_EQ(again.status, 0);
+  EXPECT_NE(again.err.find("cell field 'q_bin' (replaced by the bins of "), std::string::npos) << again.err;
 }
 
 TEST_F(Values, DoNotDependOnTheNumberOfThreads) {
@@ -259,8 +331,12 @@ TEST_F(Values, WrongCallsAreRefused) {
   expect_refused(values + "--modulus hu=1,1", 2, {"give --bins"});
   expect_refused(values + "--bins hu=3 --modulus hu=1", 2, {"is not A,B or A,B,S,T"});
   expect_refused(values + "--bins hu=3 --min-modulus 1", 2, {"--min-modulus is for --modulus"});
-  expect_refused(values + "--bins hu=3 --modulus hu=1,1,0,-5", 2, {"bone_001", "give --min-modulus"});
-  expect_refused(values + "--values hu=" + path("ct.nrrd"), 2, {"two images are called 'hu'"});
+  expect_refused(values + "--bins hu=3 --modulus hu=-1,1", 2, {"--modulus", "'-1'"});
+  expect_refused(values + "--bins hu=3 --modulus hu=1,1 --modulus ct=1,1", 2,
+                 {"--modulus", "only one is possible in a call"});
+  expect_refused(values + "--bins hu=3 --bins hu=2", 2, {"--bins hu was given twice"});
+  expect_refused(values + "--values hu=" + path("ct.nrrd"), 2,
+                 {"ramp.nrrd and ", "ct.nrrd are two images called 'hu'", " hu_2="});
   expect_refused(values + "--values-statistics mean", 2, {"'mean' is not one of min, max, deviation"});
   expect_refused(call + "--values hu=" + path("absent.nrrd"), 3, {"absent.nrrd"});
   ASSERT_EQ(prepare("").status, 0);

@@ -264,6 +264,18 @@ TEST(Prepare, RefusesOptionsThatDoNotGoTogether) {
   PrepareOptions both = small_target();
   both.cells.size = 1;
   EXPECT_NE(message(both).find("not both"), std::string::npos);
+  PrepareOptions probability = small_target();
+  probability.images.outside_probability = 2;
+  EXPECT_NE(message(probability).find("--outside-probability 2 "), std::string::npos);
+  PrepareOptions bins = small_target();
+  bins.values.images.push_back({"q", "absent.nrrd"});
+  bins.values.bins.push_back({"q", {.edges = {2, 1}}});
+  EXPECT_NE(message(bins).find("must ascend, and 1 follows 2"), std::string::npos);
+  bins.values.bins[0] = {"q", {.count = 2}, ModulusLaw{.factor = -1}};
+  EXPECT_NE(message(bins).find("the factor -1 of the law must be a number above 0"), std::string::npos);
+  bins.values.images.push_back({"r", "absent.nrrd"});
+  bins.values.bins = {{"q", {.count = 2}, ModulusLaw()}, {"r", {.count = 2}, ModulusLaw()}};
+  EXPECT_NE(message(bins).find("--modulus q and --modulus r: only one is possible"), std::string::npos);
   EXPECT_NE(error_of<UsageError>([] { (void)prepare({}, small_target()); }).find("no input"),
             std::string::npos);
 }

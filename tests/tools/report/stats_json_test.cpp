@@ -70,7 +70,7 @@ TEST(StatsJson, FollowsItsSchema) {
   EXPECT_GT(bounded["edge_lengths"]["edges"], 0);
   const auto values = stats("values " + (f / "o.vtu") + " labels=" + (f / "o.nrrd") + " -o " + (f / "v.inp") +
                             " --bins labels=2 --modulus labels=10,1 --min-modulus 1");
-  EXPECT_EQ(values["bins"]["values"], values["values"][0]["name"]);
+  EXPECT_EQ(values["bins"][0]["values"], values["values"][0]["name"]);
   // The schema rejects unknown keys and wrong types.
   j["surprise"] = 1;
   EXPECT_NE(violations(j), "");

@@ -152,7 +152,7 @@ std::vector<std::string> read_files(const CommandLine& line) {
 
 std::string bins_table_of(const CommandLine& line) {
   const std::string& mesh = line.outputs.mesh;
-  if (line.options.values.bins_of.empty() || mesh.empty() || mesh == "-") return {};
+  if (line.options.values.bins.empty() || mesh.empty() || mesh == "-") return {};
   return (std::filesystem::path(mesh).parent_path() / (file_stem(mesh) + "_bins.csv")).string();
 }
 

@@ -27,8 +27,7 @@ TetMesh without_triangles(TetMesh mesh) {
 
 void write_mesh(const TetMesh& mesh, const Prepared& result, const std::optional<TetPartition>& partition,
                 const OutputOptions& outputs, OutputFiles& files) {
-  const MeshToWrite written(mesh, result.midside ? &*result.midside : nullptr,
-                            result.bins ? &*result.bins : nullptr);
+  const MeshToWrite written(mesh, result.midside ? &*result.midside : nullptr, result.bins);
   if (partition)
     write_tet_mesh(written, *partition, outputs.mesh, &files, outputs.format);
   else
@@ -53,8 +52,8 @@ void write_result(Prepared& result, CommandRun& run) {
     write_mesh(without_triangles(result.mesh), result, partition, line.outputs, files);
   else
     write_mesh(result.mesh, result, partition, line.outputs, files);
-  if (const std::string table = bins_table_of(line); result.bins && !table.empty())
-    files.write(table, table_of_bins(result.mesh, *result.bins));
+  if (const std::string table = bins_table_of(line); !table.empty())
+    files.write(table, table_of_bins(result.mesh, result.bins));
   if (!line.outputs.boundary.empty())
     write_interfaces(result.mesh, line.outputs.boundary, &files, line.outputs.boundary_format);
   write_report(result.mesh, run, files);

@@ -110,6 +110,25 @@ void find_boundary_changes(const CommandLine& line, const TetMesh& mesh, Prepare
                report);
 }
 
+void find_unwritten_bins(const CommandLine& line, const TetFormatInfo& format, PrepareReport& report) {
+  const bool in_parts = line.outputs.parts > 0;
+  for (std::size_t d = 0; d < report.bins.size(); ++d) {
+    const BinsReport& bins = report.bins[d];
+    const auto note = [&](const std::string& what, const std::string& why) {
+      note_missing(shown(line.outputs.mesh), what + (report.bins.size() > 1 ? " of " + bins.field : ""),
+                   bins.bins.size(), why, report);
+    };
+    const std::string in_table = "; " + format.extension + " cannot hold them, but the table can";
+    if (format.bins == BinsAs::none || in_parts) {
+      if (!format.fields) note("sets of bins", in_table);
+      if (format.bins != BinsAs::none) note("sets of bins", ", but their numbers are a field");
+    } else if (format.bins == BinsAs::materials && d != leading_division(report.bins)) {
+      note("sets of bins", "; an element is in one group, but their numbers are a field");
+    }
+    if (bins.poisson && (!format.moduli || in_parts)) note("elastic moduli of bins", in_table);
+  }
+}
+
 }  // namespace
 
 void find_unwritten(const CommandLine& line, const TetMesh& mesh, PrepareReport& report) {
@@ -122,14 +141,7 @@ void find_unwritten(const CommandLine& line, const TetMesh& mesh, PrepareReport&
   if (line.outputs.no_boundary) note("faces of sheets", sheets_of(mesh).size(), ", as --no-boundary asks");
   if (!format.names) note("names of materials", mesh.material_names.size(), no_place);
   if (!format.fields) note("fields", mesh.point_fields.size() + mesh.cell_fields.size(), no_place);
-  const std::size_t bins = report.bins ? report.bins->bins.size() : 0;
-  if (format.bins == BinsAs::none || line.outputs.parts > 0) {
-    if (!format.fields)
-      note("sets of bins", bins, "; " + format.extension + " cannot hold them, but the table can");
-    if (format.bins != BinsAs::none) note("sets of bins", bins, ", but their numbers are a field");
-  }
-  if (report.bins && report.bins->poisson && (!format.moduli || line.outputs.parts > 0))
-    note("elastic moduli of bins", bins, "; " + format.extension + " cannot hold them, but the table can");
+  find_unwritten_bins(line, format, report);
   find_name_changes(line, mesh, report);
   find_boundary_changes(line, mesh, report);
 }

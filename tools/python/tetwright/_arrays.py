@@ -43,8 +43,9 @@ def indices(values: Any, name: str, what: str) -> np.ndarray:
     return array.astype(np.int64)
 
 
-def whole_numbers(values: Any, name: str, what: str) -> np.ndarray:
-    """Returns the values as int32; they must be whole and within its range."""
+def whole_numbers(values: Any, name: str, what: str, start: tuple[int, ...] = ()) -> np.ndarray:
+    """Returns the values as int32; they must be whole and within its range. `start` is the index of the first one, if
+    they are a part of an array."""
     array = numbers(values, name, what, "biuf")
     if array.dtype == bool:
         return array.astype(np.int32)
@@ -53,7 +54,7 @@ def whole_numbers(values: Any, name: str, what: str) -> np.ndarray:
         bad = ~((array >= limits.min) & (array <= limits.max))
         if array.dtype.kind == "f":
             bad |= np.floor(array) != array
-    _refuse(bad, array, name, what, "which is not a whole number of 32 bits")
+    _refuse(bad, array, name, what, "which is not a whole number of 32 bits", start)
     return array.astype(np.int32)
 
 
@@ -79,7 +80,8 @@ def check_range(cells: np.ndarray, points: int, name: str, what: str) -> None:
     _refuse(bad, cells, name, what, f"but there are {points} points, numbered from 0")
 
 
-def _refuse(bad: np.ndarray, array: np.ndarray, name: str, what: str, why: str) -> None:
+def _refuse(bad: np.ndarray, array: np.ndarray, name: str, what: str, why: str, start: tuple[int, ...] = ()) -> None:
     if bad.any():
         at = tuple(int(i) for i in np.argwhere(bad)[0])
-        raise _core.InputError(f"{name}: {what} hold {array[at]} at {at}, {why}")
+        whole = tuple(i + (start[axis] if start else 0) for axis, i in enumerate(at))
+        raise _core.InputError(f"{name}: {what} hold {array[at]} at {whole}, {why}")

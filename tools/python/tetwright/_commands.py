@@ -24,7 +24,8 @@ def prepare(scan: Any, *, target_tets: Optional[int] = None, tolerance: Union[fl
 
     scan -- a surface, a list of surfaces, or a dict from names of materials to surfaces (names are kept unchanged;
         later surfaces carve earlier ones); or one array of labels of shape (nx, ny, nz), whole numbers, where 0 is
-        outside; other floats, and arrays of shape (nx, ny, nz, channels), are images
+        outside; other floats, and arrays of shape (nx, ny, nz, channels), are images. Arrays of zarr, h5py, dask and
+        alike are read block by block
     target_tets -- target number of tets; without it `tolerance` or `size_field` is required
     size_field -- edge lengths by location: a file, arrays (points (n, 3), tets (m, 4) or triangles (m, 3), lengths
         (n,)), or a mesh of meshio or pyvista whose points have them as "size"
@@ -38,7 +39,7 @@ def prepare(scan: Any, *, target_tets: Optional[int] = None, tolerance: Union[fl
 
     Raises a subclass of Error; issues a ShortfallWarning for each request that was not met.
     """
-    inputs = Inputs(spacing, origin, affine)
+    inputs = Inputs(spacing, origin, affine, options.get("memory_limit"))
     options.update(target_tets=target_tets, tolerance=tolerance)
     return _run("prepare", inputs, _scans(scan, inputs, options), options, progress)
 
@@ -47,7 +48,7 @@ def mesh(scan: Any, *, tolerance: Union[float, str, None] = None, spacing: Any =
          affine: Any = None, progress: Progress = None, **options: Any) -> TetMesh:
     """Turns scans or a segmented volume into a dense mesh, as `prepare` does before it simplifies. Arguments are
     those of `prepare`, options those of `tetwright mesh --help`: resolution=128, voxel_size=0.5."""
-    inputs = Inputs(spacing, origin, affine)
+    inputs = Inputs(spacing, origin, affine, options.get("memory_limit"))
     options.update(tolerance=tolerance)
     return _run("mesh", inputs, _scans(scan, inputs, options), options, progress)
 
@@ -75,13 +76,13 @@ def values(tets: Any, images: Any, *, spacing: Any = None, origin: Any = None, a
     the tets, and the value at each point as a point field.
 
     tets -- as for `simplify`
-    images -- a dict from the names of the fields to images: files, arrays of values of shape (nx, ny, nz), or images
-        of nibabel
+    images -- a dict from the names of the fields to images: files, arrays of values of shape (nx, ny, nz), also of
+        zarr, h5py and dask, or images of nibabel
     spacing, origin, affine -- for arrays, as for `prepare`
     options -- those of `tetwright values --help`: values_mask=array, values_statistics=["min", "max"],
         bins={"density": 8}, modulus={"density": [6850, 1.49]}, min_modulus=1
     """
-    inputs = Inputs(spacing, origin, affine)
+    inputs = Inputs(spacing, origin, affine, options.get("memory_limit"))
     if not isinstance(images, dict):
         raise _core.UsageError(f"images is a {type(images).__name__}; give a dict from names of fields to images")
     names = [inputs.add(tets, "mesh")]

@@ -8,10 +8,11 @@ from typing import Any, Iterable, Optional
 import numpy as np
 
 from . import _core
-from ._arrays import holds_whole_numbers, image_values, indices, numbers, whole_numbers
+from ._arrays import indices, numbers, whole_numbers
 from ._cells import Cells, cells_of, field_items, note_large_integers, size_field
 from ._mesh import TetMesh
 from ._text import file_name, plain_text
+from ._voxels import Memory, Voxels, is_blocked_array
 
 # Names of point data that give edge lengths.
 SIZE_FIELDS = ("size", "sizing", "edge_length", "h")
@@ -25,8 +26,11 @@ def is_file(value: Any) -> bool:
 class Inputs:
     """Collects the inputs of one call. Each has a unique name: that of its file, or a generated or given one."""
 
-    def __init__(self, spacing: Any = None, origin: Any = None, affine: Any = None):
+    def __init__(self, spacing: Any = None, origin: Any = None, affine: Any = None, memory_limit: Any = None):
         self.core = _core.Inputs()
+        # A limit that makes no sense is refused with the other options.
+        limited = isinstance(memory_limit, (int, float)) and memory_limit > 0
+        self._memory = Memory(float(memory_limit) if limited else 0)
         self._placement = (spacing, origin, affine)
         self._placement_used = False
         self._taken: set[bytes] = set()
@@ -48,10 +52,9 @@ class Inputs:
         self._objects.add(key)
         if isinstance(value, TetMesh):
             self.core.add_own_mesh(key, value._core)
-        elif isinstance(value, np.ndarray) and value.ndim in (3, 4):
-            self._add_volume(key, name, value, None)
-        elif hasattr(value, "affine") and hasattr(value, "dataobj"):  # nibabel
-            self._add_volume(key, name, np.asanyarray(value.dataobj), value.affine)
+        elif _holds_voxels(value):
+            voxels = self._placed_voxels(value, name).labels_or_image()
+            (self.core.add_volume if isinstance(voxels, _core.Labels) else self.core.add_image)(key, voxels)
         else:
             self._add_cells(key, name, cells_of(value, name))
         return key
@@ -87,13 +90,14 @@ class Inputs:
         return spacing
 
     def add_image(self, value: Any, name: str) -> bytes:
-        """Adds an image and returns its name: a file, an array of values of three axes, or an image of nibabel."""
+        """Adds an image and returns its name: a file, an array of values of three axes (of numpy, zarr, h5py, dask or
+        alike), or an image of nibabel."""
         if is_file(value):
             return file_name(value, name)
         key = self._unique("image " + name)
-        values, matrix = self._placed_voxels(value, name)
+        voxels = self._placed_voxels(value, name)
         self._objects.add(key)
-        self.core.add_values_image(key, image_values(values, name), matrix[:3, 3].tolist(), matrix[:3, :3].tolist())
+        self.core.add_values_image(key, voxels.image())
         return key
 
     def add_mask(self, value: Any) -> bytes:
@@ -101,10 +105,9 @@ class Inputs:
         if is_file(value):
             return file_name(value, "values_mask")
         key = self._unique("values_mask")
-        labels, matrix = self._placed_voxels(value, "values_mask")
+        voxels = self._placed_voxels(value, "values_mask")
         self._objects.add(key)
-        self.core.add_mask(key, whole_numbers(labels, "values_mask", "labels"), matrix[:3, 3].tolist(),
-                           matrix[:3, :3].tolist())
+        self.core.add_mask(key, voxels.labels())
         return key
 
     def finish(self) -> None:
@@ -140,24 +143,16 @@ class Inputs:
         self.core.add_mesh(key, cells.points, cells.tets, tags, cells.names, field_items(cells.point_fields),
                            field_items(cells.cell_fields), cells.dropped, cells.grouped_triangles())
 
-    def _placed_voxels(self, value: Any, name: str) -> tuple[np.ndarray, np.ndarray]:
-        """Returns an array of voxels and the matrix that maps its indices to positions."""
+    def _placed_voxels(self, value: Any, name: str) -> Voxels:
+        """Returns an array of voxels at its position."""
         if hasattr(value, "affine") and hasattr(value, "dataobj"):  # nibabel
-            return self._placed_array(np.asanyarray(value.dataobj), value.affine)
-        if isinstance(value, np.ndarray):
-            return self._placed_array(value, None)
+            return Voxels(np.asanyarray(value.dataobj), name, self._matrix(value.affine), self._memory)
+        if isinstance(value, np.ndarray) or is_blocked_array(value):
+            return Voxels(value, name, self._matrix(None), self._memory)
         raise _core.UsageError(f"{name} is a {type(value).__name__}; give a file, an array, or an image of nibabel")
 
-    def _add_volume(self, key: bytes, name: str, voxels: np.ndarray, own_affine: Optional[np.ndarray]) -> None:
-        voxels, matrix = self._placed_array(voxels, own_affine)
-        if voxels.ndim == 3 and holds_whole_numbers(voxels):
-            add, voxels = self.core.add_volume, whole_numbers(voxels, name, "labels")
-        else:
-            add, voxels = self.core.add_image, image_values(voxels, name)
-        add(key, voxels, matrix[:3, 3].tolist(), matrix[:3, :3].tolist())
-
-    def _placed_array(self, voxels: np.ndarray,
-                      own_affine: Optional[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    def _matrix(self, own_affine: Optional[np.ndarray]) -> np.ndarray:
+        """Returns the matrix that maps indices of voxels to positions."""
         spacing, origin, affine = self._placement
         self._placement_used = True
         if affine is not None and (spacing is not None or origin is not None):
@@ -170,9 +165,12 @@ class Inputs:
         else:
             matrix[:3, :3] = np.diag(_three("spacing", 1 if spacing is None else spacing))
             matrix[:3, 3] = _three("origin", 0 if origin is None else origin)
-        if voxels.ndim == 4 and voxels.shape[3] == 1:
-            voxels = voxels[..., 0]
-        return voxels, matrix
+        return matrix
+
+
+def _holds_voxels(value: Any) -> bool:
+    return (isinstance(value, np.ndarray) and value.ndim in (3, 4)) or \
+        (hasattr(value, "affine") and hasattr(value, "dataobj")) or is_blocked_array(value)
 
 
 def _placed(option: str, value: Any) -> np.ndarray:

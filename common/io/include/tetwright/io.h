@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -172,16 +173,17 @@ struct SurfaceWithFields {
 /// Input of a writer of tet meshes: a view that must not outlive the mesh, the nodes and the bins.
 struct MeshToWrite {
   // NOLINTNEXTLINE(google-explicit-constructor): every mesh can be written
-  MeshToWrite(const TetMesh& of_mesh, const MidsideNodes* nodes = nullptr, const TetBins* of_bins = nullptr)
+  MeshToWrite(const TetMesh& of_mesh, const MidsideNodes* nodes = nullptr,
+              std::span<const TetBins> of_bins = {})
       : mesh(of_mesh), midside(nodes), bins(of_bins) {}
 
   const TetMesh& mesh;
   /// Midside nodes that make the tets second-order elements of ten nodes, for formats that support them;
   /// null: linear tets.
   const MidsideNodes* midside;
-  /// Bins of the tets, for formats that hold them (TetFormatInfo::bins); null: none. Boundaries and
+  /// Divisions of the tets into bins, for formats that hold them (TetFormatInfo::bins). Boundaries and
   /// interfaces are those of the materials all the same, not of the bins.
-  const TetBins* bins;
+  std::span<const TetBins> bins;
 
   /// Fields of the points, extended to the midside nodes if there are any.
   std::vector<MeshField> node_fields() const {
@@ -248,9 +250,10 @@ bool may_hold_surface(const std::string& path);
 
 /// How a format holds bins of tets.
 enum class BinsAs : std::uint8_t {
-  none,       ///< only as a field, if it has fields
-  sets,       ///< as sets of tets with names, beside the materials
-  materials,  ///< instead of the materials: their tets are divided
+  none,                ///< only as a field, if it has fields
+  sets,                ///< as sets of tets with names, beside the materials
+  materials,           ///< instead of the materials: their tets are divided, by the leading division alone
+  materials_and_sets,  ///< likewise, and other divisions as sets
 };
 
 /// Contents that a tet mesh format can store when it is written.

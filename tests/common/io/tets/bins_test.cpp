@@ -23,7 +23,7 @@ struct Binned {
     bins = bin_tets(mesh, "density", {1, 2, 5}, {.count = 2});
     if (moduli) set_moduli({.factor = 1000, .exponent = 1}, bins);
   }
-  MeshToWrite written() const { return {mesh, nullptr, &bins}; }
+  MeshToWrite written() const { return {mesh, nullptr, {&bins, 1}}; }
 
   TetMesh mesh;
   TetBins bins;
@@ -98,6 +98,60 @@ TEST(Bins, Msh41HasVolumesInGroupsOfTheMaterialAndOfTheBin) {
     EXPECT_EQ(read.mesh.materials, (std::vector<MaterialTag>{7, 7, 9}));
     EXPECT_EQ(read.mesh.material_names.at(7), "bone");
   }
+}
+
+/// Binned, and a second division: {1, 3} and {2} in the bins, with moduli.
+struct TwiceBinned : Binned {
+  TwiceBinned() {
+    TetBins second = bin_tets(mesh, "ash", {1, 9, 1}, {.edges = {5}});
+    divisions = {bins, second};
+    name_apart(mesh, divisions);
+    set_moduli({.factor = 1000, .exponent = 1}, divisions[1]);
+  }
+  MeshToWrite written() const { return {mesh, nullptr, divisions}; }
+
+  std::vector<TetBins> divisions;
+};
+
+TEST(Bins, OfSeveralValuesAreSetsOfTheirOwn) {
+  const TwiceBinned binned;
+  const std::string abaqus = text_of(write_abaqus, binned.written());
+  expect_parts(abaqus, {"*ELSET, ELSET=bone_density_001\n1\n", "*ELSET, ELSET=bone_density_002\n2\n",
+                        "*ELSET, ELSET=bone_ash_002\n2\n", "*ELSET, ELSET=plate_ash_001\n3\n",
+                        "*SOLID SECTION, ELSET=plate_ash_001, MATERIAL=plate_ash_001\n"});
+  EXPECT_EQ(abaqus.find("MATERIAL=bone_density"), std::string::npos) << abaqus;
+  // Sections are materials when the file is read.
+  EXPECT_EQ(read_abaqus(abaqus, "a.inp").mesh.material_names.at(2), "bone_ash_002");
+}
+
+TEST(Bins, WithModuliArePropertiesAndOthersSets) {
+  const TwiceBinned binned;
+  const std::string nastran = text_of(write_nastran, binned.written());
+  expect_parts(nastran, {"$ material 10: bone_ash_001\nPSOLID  10      10\n", "MAT1*   10",
+                         ": bone_density_002, tets with the mean 2 of density"});
+  // The numbers of sets of tets follow those of the surfaces' sets of nodes.
+  const std::size_t set = nastran.find(": plate_density_001, tets");
+  ASSERT_NE(set, std::string::npos) << nastran;
+  EXPECT_NE(nastran.find("3\n", nastran.find("SET1", set)), std::string::npos);
+  EXPECT_EQ(read_nastran(nastran, "a.bdf").mesh.material_names.at(11), "bone_ash_002");
+  const std::string febio = text_of(write_febio, binned.written());
+  expect_parts(febio, {"<Elements type=\"tet4\" name=\"bone_ash_001\">",
+                       "<ElementSet name=\"bone_density_002\">2</ElementSet>",
+                       "<ElementSet name=\"plate_density_001\">3</ElementSet>"});
+  const ReadTetMesh msh = read_msh(write_msh(binned.written()), "a.msh");
+  EXPECT_EQ(msh.mesh.material_names.at(11), "bone_ash_002");
+}
+
+TEST(Bins, OfSeveralValuesAreGroupsOfTheirCombinationsInMsh41) {
+  const TwiceBinned binned;
+  for (const auto& write : {write_msh41, write_msh41_binary}) {
+    const std::string text = text_of(write, binned.written());
+    expect_parts(text, {"\"bone_ash_002\"", "\"bone_density_001\"", "\"plate_density_001\""});
+    EXPECT_EQ(read_msh(text, "a.msh").mesh.materials, (std::vector<MaterialTag>{7, 7, 9}));
+  }
+  // Each volume is in the groups of its material and of both bins.
+  const std::string text = text_of(write_msh41, binned.written());
+  expect_parts(text, {" 3 7 10 13 ", " 3 7 11 14 ", " 3 9 12 15 "});
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 #include "common/io/volumes/raw_volume.h"
 
 #include <cstring>
+#include <fstream>
+#include <optional>
 
 #include "tests/common/io/file_test.h"
 #include "tests/common/io/volume_boxes.h"
@@ -172,6 +174,36 @@ TEST_F(RawVolumes, FilesThatShrinkWhileTheyAreReadAreNamed) {
   put(path("a.nrrd"), nrrd_header("uchar", ""));
   const std::string message = error_of<InputError>([&] { (void)read_all(*source, "a.nrrd"); });
   EXPECT_NE(message.find("truncated while it was read"), std::string::npos) << message;
+}
+
+/// Bytes that this process has read, or std::nullopt if the system does not count them.
+std::optional<std::uint64_t> bytes_read() {
+  std::ifstream counts("/proc/self/io");
+  std::string name;
+  std::uint64_t count = 0;
+  while (counts >> name >> count)
+    if (name == "rchar:") return count;
+  return std::nullopt;
+}
+
+TEST_F(RawVolumes, ChannelsThatAlternateAreReadOnce) {
+  constexpr int side = 40, channels = 8;
+  std::vector<std::uint16_t> numbers;
+  for (int i = 0; i < side * side * side * channels; ++i)
+    numbers.push_back(static_cast<std::uint16_t>(i % channels * 1000 + i / channels % 997));
+  const std::string bytes = bytes_of(numbers, false);
+  put(path("a.nrrd"),
+      "NRRD0004\ntype: uint16\ndimension: 4\nsizes: 8 40 40 40\nkinds: vector domain domain "
+      "domain\nencoding: raw\nendian: little\n\n" +
+          bytes);
+  const std::optional<std::uint64_t> before = bytes_read();
+  const ImageVolume image = read_image(path("a.nrrd"));
+  const std::optional<std::uint64_t> after = bytes_read();
+  ASSERT_EQ(image.channels.size(), std::size_t{channels});
+  for (std::size_t c = 0; c < channels; ++c)
+    for (const std::size_t v : {std::size_t{0}, std::size_t{998}, std::size_t{side * side * side - 1}})
+      EXPECT_EQ(image.channels[c][v], static_cast<float>(c * 1000 + v % 997));
+  if (before) EXPECT_LT(*after - *before, bytes.size() + max_header_bytes + (std::size_t{1} << 16));
 }
 
 }  // namespace

@@ -232,8 +232,8 @@ struct LabelOptions {
 struct ImageOptions {
   /// Thresholds; one without a name is called like the input.
   std::vector<IsoValue> isos;
-  /// Points where no channel, or no image of several, exceeds this are outside. std::nullopt: images are
-  /// probability maps, and the outside has what they lack to 1.
+  /// From 0 to 1: points where no channel, or no image of several, exceeds this are outside. std::nullopt:
+  /// images are probability maps, and the outside has what they lack to 1.
   std::optional<double> outside_probability;
   std::optional<double> smoothing;  ///< standard deviation, voxels
 
@@ -429,7 +429,7 @@ struct PrepareReport {
   RequestedSizes sizes;
   std::optional<EdgeLengthReport> edge_lengths;  ///< if sizes are requested
   std::vector<ValueReport> values;               ///< one for each image
-  std::optional<BinsReport> bins;                ///< if bins are requested
+  std::vector<BinsReport> bins;                  ///< as ValueOptions::bins requests them
   double seconds_read = 0, seconds_mesh = 0, seconds_write = 0, seconds_total = 0;
   LoopTimes loops_read, loops_mesh, loops_write, loops_total;  ///< loops of these stages
 };
@@ -438,7 +438,7 @@ struct PrepareReport {
 struct Prepared {
   TetMesh mesh;                         ///< input units, with its interfaces
   std::optional<MidsideNodes> midside;  ///< with order 2
-  std::optional<TetBins> bins;          ///< with ValueOptions::bins_of
+  std::vector<TetBins> bins;            ///< as ValueOptions::bins requests them
   PrepareReport report;                 ///< findings, measures and shortfalls
   /// Surface with which to compare the mesh: the input surface, the boundary and interfaces of a segmented
   /// volume's dense mesh, or those of the input tet mesh. Null unless KeepOptions::reference.

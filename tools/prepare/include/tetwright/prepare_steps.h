@@ -67,6 +67,7 @@ struct PrepareRun {
   Task task;
   const PrepareOptions& options;
   MemoryLimit memory_limit;
+  HeldMemory held;  ///< by images and masks of ValueOptions
   Stopwatch since_start;
   Progress& progress;
   const Progress::Clock::time_point deadline_before;

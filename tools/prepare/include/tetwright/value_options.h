@@ -21,6 +21,14 @@ struct ValueImage {
   std::shared_ptr<const ImageVolume> image = nullptr;  ///< null: read the file
 };
 
+/// Bins by the values of an image, see bin_tets().
+struct ValueBins {
+  std::string of;  ///< name of the image
+  BinRule rule;
+  /// Elastic modulus of each bin. At most one of all ValueBins has it, since a tet has one modulus.
+  std::optional<ModulusLaw> modulus = {};
+};
+
 /// Values of images on the result, see image_values().
 struct ValueOptions {
   std::vector<ValueImage> images;
@@ -31,11 +39,8 @@ struct ValueOptions {
   std::shared_ptr<const LabelVolume> mask = nullptr;  ///< null: read the file
   /// Only voxels with the label of a tet's material count. For a segmented volume.
   bool own_label = false;
-  /// Name of the image by which tets are divided into bins; empty: none.
-  std::string bins_of;
-  BinRule bins;
-  /// Elastic modulus of each bin.
-  std::optional<ModulusLaw> modulus;
+  /// Divisions of the tets into bins, for different images.
+  std::vector<ValueBins> bins;
 };
 
 /// Values of an image on the result.
