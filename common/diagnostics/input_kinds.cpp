@@ -299,6 +299,17 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
                 "that of the first one, right-anterior-superior)",
      .cause = "A header names no coordinate system, or one that is not anatomical.",
      .remedy = "Check that the parts lie where they should; write the coordinate system into the header."},
+    {.code = surface_space_unknown,
+     .name = "surface-space-unknown",
+     .severity = Severity::note,
+     .title = "surfaces without a coordinate system",
+     .message =
+         "N surfaces whose file names no space: 'NAME', 'NAME' (taken as they are, in that of the first "
+         "input, right-anterior-superior)",
+     .cause = "Files of surfaces need not name their coordinate system; 3D Slicer writes `SPACE=LPS` or "
+              "`SPACE=RAS` into their headers.",
+     .remedy =
+         "None needed if they are in that of the first input. Otherwise `--surface-space LPS` or `RAS`."},
     {.code = tet_points_merged,
      .name = "tet-points-merged",
      .severity = Severity::note,

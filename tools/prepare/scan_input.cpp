@@ -16,6 +16,7 @@
 #include "tetwright/mesher_input.h"
 #include "tools/prepare/image_input.h"
 #include "tools/prepare/mask_input.h"
+#include "tools/prepare/surface_spaces.h"
 #include "tools/prepare/value_input.h"
 
 namespace tetwright {
@@ -124,6 +125,8 @@ bool is_volume(const std::vector<Input>& inputs, const PrepareOptions& options,
   if (!bodies.caps.empty()) throw UsageError("--cap is for surfaces, and the input is a segmented volume");
   if (bodies.base || bodies.thickness)
     throw UsageError("--base and --thicken are for surfaces, and the input is a segmented volume");
+  if (!bodies.surface_space.empty())
+    throw UsageError("--surface-space is for surfaces, and the input is a segmented volume");
   return true;
 }
 
@@ -222,7 +225,9 @@ std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs,
   const auto add = [&](const std::string& name, const std::string& file, TriangleMesh surface) {
     surfaces.push_back({name, static_cast<MaterialTag>(surfaces.size() + 1), std::move(surface), file});
   };
-  const auto count = [&](TriangleMesh surface) {
+  SurfaceSpaces spaces(run.options.bodies.surface_space);
+  const auto take = [&](TriangleMesh surface, const std::string& file) {
+    spaces.add(surface, file);
     report.input_triangles += surface.triangles.size();
     report.input_points += surface.points.size();
     return surface;
@@ -231,7 +236,7 @@ std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs,
     std::vector<Dropped> dropped;
     TriangleMesh surface = take_surface(input, &dropped, run.seconds_waited);
     report_dropped(dropped, input.name, report);
-    return count(std::move(surface));
+    return take(std::move(surface), input.name);
   };
   std::vector<SplitFile> split;
   for (Input& input : inputs) {
@@ -239,10 +244,10 @@ std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs,
     if (input.role != Input::Role::body) {
       sheets.push_back({input.material, read(input), file, input.role == Input::Role::partition});
     } else if (!input.material.empty()) {
-      add(input.material, file, input.is_vdb_file() ? count(read_one_level_set(input)) : read(input));
+      add(input.material, file, input.is_vdb_file() ? take(read_one_level_set(input), file) : read(input));
     } else if (input.is_vdb_file()) {
       for (NamedSurface& s : read_level_sets(file))
-        add(s.name.empty() ? file_stem(file) : s.name, file, count(std::move(s.surface)));
+        add(s.name.empty() ? file_stem(file) : s.name, file, take(std::move(s.surface), file));
     } else if (split_solids_asked) {
       std::vector<NamedSurface> solids = split_solids(read(input), input.material_name());
       if (solids.size() == 1) {
@@ -263,6 +268,9 @@ std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs,
     throw InputError(inputs.front().name, 0,
                      "--split-solids finds no solids, groups or labels that distinguish its parts; leave the "
                      "option out (it does not split what --material names)");
+  const std::vector<Diagnostic> findings = spaces.findings();
+  report.diagnostics.insert(report.diagnostics.end(), findings.begin(), findings.end());
+  report.space = spaces.space();
   name_solids(std::move(split), run.options.bodies.layers, surfaces, report.diagnostics);
   return surfaces;
 }

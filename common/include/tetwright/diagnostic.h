@@ -99,6 +99,7 @@ enum class DiagnosticCode : std::uint8_t {
   masks_empty,
   space_converted,
   space_unknown,
+  surface_space_unknown,
   // Tet meshes.
   tet_points_merged,
   tets_collapsed,
