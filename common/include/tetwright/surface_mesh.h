@@ -28,8 +28,8 @@ struct TriangleMesh {
   std::string space = {};
 };
 
-/// Converts a surface to another coordinate system, if both are such as "left-posterior-superior": coordinates
-/// along the axes that point the other way change their signs. Triangles keep their orientation.
+/// Converts a surface to another coordinate system, if both are such as "left-posterior-superior":
+/// coordinates along the axes that point the other way change their signs. Triangles keep their orientation.
 /// \param space see LabelGrid::space
 /// \return false if nothing changed: the systems are equal, or one of them is unknown
 bool change_space(TriangleMesh& surface, const std::string& space);
