@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tetwright/label_volume.h"
 
-#include <algorithm>
 #include <cmath>
-#include <string_view>
 
 #include "common/number_text.h"
 #include "common/tolerances.h"
@@ -23,38 +21,6 @@ void set_spacing(LabelGrid& grid, const Vec3& spacing) {
   grid.spacing_replaced = !grid.spacing_assumed && before != spacing;
   grid.spacing_assumed = false;
   for (int axis = 0; axis < 3; ++axis) grid.directions.col(axis) *= spacing[axis] / before[axis];
-}
-
-namespace {
-
-/// Directions of the three axes: "left", "posterior", "superior". Empty unless there are three.
-std::vector<std::string> directions_of(const std::string& space) {
-  std::vector<std::string> words(1);
-  for (const char c : space)
-    if (c == '-')
-      words.emplace_back();
-    else
-      words.back() += c;
-  constexpr std::array<std::array<std::string_view, 2>, 3> known{
-      {{"left", "right"}, {"anterior", "posterior"}, {"inferior", "superior"}}};
-  if (words.size() != known.size()) return {};
-  for (std::size_t a = 0; a < known.size(); ++a)
-    if (std::find(known[a].begin(), known[a].end(), words[a]) == known[a].end()) return {};
-  return words;
-}
-
-}  // namespace
-
-bool change_space(LabelGrid& grid, const std::string& space) {
-  const std::vector<std::string> from = directions_of(grid.space), to = directions_of(space);
-  if (from.empty() || to.empty() || from == to) return false;
-  for (int a = 0; a < 3; ++a) {
-    if (from[static_cast<std::size_t>(a)] == to[static_cast<std::size_t>(a)]) continue;
-    grid.origin[a] = -grid.origin[a];
-    grid.directions.row(a) = -grid.directions.row(a);
-  }
-  grid.space = space;
-  return true;
 }
 
 void check_geometry(const LabelGrid& volume, const std::string& file) {

@@ -309,6 +309,17 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
      .cause = "A surface in a segmented volume reaches its border or beyond it, and bodies are not cut off.",
      .remedy = "None if that is wanted: labels that reached the border there end as they do beside other "
                "outside voxels, without a patch of the border."},
+    {.code = surface_space_unknown,
+     .name = "surface-space-unknown",
+     .severity = Severity::note,
+     .title = "surfaces without a coordinate system",
+     .message =
+         "N surfaces whose file names no space: 'NAME', 'NAME' (taken as they are, in that of the first "
+         "input, right-anterior-superior)",
+     .cause = "Files of surfaces need not name their coordinate system; 3D Slicer writes `SPACE=LPS` or "
+              "`SPACE=RAS` into their headers.",
+     .remedy =
+         "None needed if they are in that of the first input. Otherwise `--surface-space LPS` or `RAS`."},
     {.code = tet_points_merged,
      .name = "tet-points-merged",
      .severity = Severity::note,

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "common/geometry/box_tree.h"
+#include "common/images/grid_box.h"
 #include "common/images/nearest_voxels.h"
 #include "common/images/voxel_weights.h"
 #include "common/message_text.h"
@@ -26,25 +27,10 @@ constexpr std::size_t slices = 50, min_slice = 10'000;  // between reports of pr
 /// meshes of the same object meet up to rounding of the file's coordinates.
 constexpr double negligible_part = 1e-6;
 
-std::string box_text(const Box3& box) { return place_text(box.low) + " to " + place_text(box.high); }
-
-/// Box of an image, with the outer halves of its voxels.
-Box3 box_of(const LabelGrid& grid) {
-  Box3 box;
-  for (int corner = 0; corner < 8; ++corner) {
-    Vec3 index;
-    for (int a = 0; a < 3; ++a)
-      index[a] = (corner >> a & 1) ? grid.size[static_cast<std::size_t>(a)] - 0.5 : -0.5;
-    box.add(grid.to_input(index));
-  }
-  return box;
-}
-
 InputError elsewhere(const LabelGrid& image, const Box3& box, const std::string& image_name,
                      const std::string& other) {
-  return {image_name, 0,
-          "no part of the image is in " + other + ": the image reaches from " + box_text(box_of(image)) +
-              ", that from " + box_text(box) + "; check origin, spacing, unit and coordinate system of both"};
+  return boxes_apart(image_name, "no part of the image is in " + other, "the image", box_of(image), "that",
+                     box);
 }
 
 /// Weighted statistics of voxels.

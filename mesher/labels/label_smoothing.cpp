@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <tuple>
+#include <utility>
 
 #include "mesher/tuning/label_tuning.h"
 
@@ -278,19 +281,22 @@ void LabelSmoother::distances_from_shares(int margin, std::span<const float> gro
 void LabelSmoother::enforce_contacts() {
   // Lifts are computed from the unmodified distances, so they do not depend on the order of nodes.
   std::vector<Lift> lifts;
-  for (const MixedNode& n : mixed_)
+  for (const MixedNode& n : mixed_) {
     for (int normal = 0; normal < 3; ++normal) {
       connect_edge(n, normal, lifts);
       widen_contact(n, normal, lifts);
     }
+    connect_corner(n, lifts);
+  }
   std::sort(lifts.begin(), lifts.end(), [](const Lift& x, const Lift& y) {
-    return x.place != y.place ? x.place < y.place : x.by > y.by;
+    return std::tuple(x.place, x.label, y.by) < std::tuple(y.place, y.label, x.by);
   });
-  for (std::size_t i = 0; i < lifts.size(); ++i)
-    if (i == 0 || lifts[i].place != lifts[i - 1].place) {
-      float& d = fields_[own_[lifts[i].place]][lifts[i].place];
-      d = std::max(d - lifts[i].by, -band);
-    }
+  for (std::size_t i = 0; i < lifts.size(); ++i) {
+    const Lift& lift = lifts[i];
+    if (i > 0 && lift.place == lifts[i - 1].place && lift.label == lifts[i - 1].label) continue;
+    float& d = fields_[lift.label][lift.place];
+    d = std::max(d - lift.by, -band);
+  }
 }
 
 void LabelSmoother::connect_edge(const MixedNode& n, int normal, std::vector<Lift>& lifts) const {
@@ -324,7 +330,64 @@ void LabelSmoother::connect_edge(const MixedNode& n, int normal, std::vector<Lif
   }
   if (lack <= 0) return;
   for (int v : quad)
-    if (own_[v] == connected) lifts.push_back({v, lack / 2});
+    if (own_[v] == connected) lifts.push_back({v, connected, lack / 2});
+}
+
+void LabelSmoother::connect_corner(const MixedNode& n, std::vector<Lift>& lifts) const {
+  for (const int i : position(n.place))
+    if (!settled(i) || !settled(i + 1)) return;
+  constexpr int corners = 8;
+  std::array<int, corners> block{};
+  std::array<std::uint16_t, corners> own{};
+  for (int c = 0; c < corners; ++c) {
+    block[c] = n.place + place(c & 1, c >> 1 & 1, c >> 2);
+    own[c] = own_[block[c]];
+  }
+  const auto voxels_of = [&](std::uint16_t label) { return std::count(own.begin(), own.end(), label); };
+  bool apart = false;
+  for (int c = 0; c < corners / 2; ++c)
+    apart = apart || (own[c] == own[corners - 1 - c] && voxels_of(own[c]) == 2);
+  if (!apart) return;
+  std::optional<std::pair<int, std::uint16_t>> rarest;
+  for (int c = 0; c < corners / 2; ++c) {
+    if (own[c] != own[corners - 1 - c]) continue;
+    int count = 0;
+    for (int k = -1; k <= 2; ++k)
+      for (int j = -1; j <= 2; ++j)
+        for (int i = -1; i <= 2; ++i) count += own_[n.place + place(i, j, k)] == own[c];
+    const std::pair candidate(count, own[c]);
+    if (!rarest || candidate < *rarest) rarest = candidate;
+  }
+  const std::uint16_t connected = rarest->second;
+  float lack = 0;
+  for (const std::uint16_t other : own) {
+    if (other == connected) continue;
+    float lead = 0;
+    for (const int v : block) lead += fields_[connected][v] - fields_[other][v];
+    lack = std::max(lack, lead + corners * 2 * Smoothing::min_corner_connection);
+  }
+  // The two nodes alone cannot outweigh the six others, where the label comes closer to the node's own one.
+  std::array<float, corners> by{};
+  std::array<bool, corners> full{};
+  for (int round = 0; round < corners && lack > 0; ++round) {
+    const auto left = std::count(full.begin(), full.end(), false);
+    if (left == 0) break;
+    const float share = lack / static_cast<float>(left);
+    for (int c = 0; c < corners; ++c) {
+      if (full[c]) continue;
+      const float at_node = fields_[connected][block[c]];
+      const float most =
+          own[c] == connected
+              ? at_node + band
+              : std::max(0.0F, at_node - fields_[own[c]][block[c]] - 2 * Smoothing::min_distance);
+      const float before = by[c];
+      full[c] = before + share >= most;
+      by[c] = std::min(before + share, most);
+      lack -= by[c] - before;
+    }
+  }
+  for (int c = 0; c < corners; ++c)
+    if (by[c] > 0) lifts.push_back({block[c], connected, by[c]});
 }
 
 void LabelSmoother::widen_contact(const MixedNode& n, int normal, std::vector<Lift>& lifts) const {
@@ -345,7 +408,7 @@ void LabelSmoother::widen_contact(const MixedNode& n, int normal, std::vector<Li
     lack = std::max(lack, both + 2 * Smoothing::min_contact - third);
   }
   if (lack <= 0) return;
-  for (int v : {p, q}) lifts.push_back({v, 2 * lack});
+  for (int v : {p, q}) lifts.push_back({v, own_[v], 2 * lack});
 }
 
 void LabelSmoother::grow(std::span<const float> growth) {

@@ -36,7 +36,9 @@ namespace tetwright {
 ///  5. Values u become distances -probit(u), which are correct for a flat interface.
 ///  6. If labels alternate in the four voxels around an edge, the two voxels of one label are connected; if
 ///     both labels form such a pair, the label that is rarer nearby is chosen. Slanted sheets one voxel thick
-///     are connected by such edges only, and labels that touch only along an edge are kept apart.
+///     are connected by such edges only, and labels that touch only along an edge are kept apart. Likewise if
+///     two opposite ones of the eight voxels around a corner are the only ones of their label there: of the
+///     labels with two opposite voxels, the rarest nearby is connected.
 ///  7. Labels that share a voxel face get a contact of a minimum size, as far as step 6 and the band permit.
 ///
 /// Nodes that neighbouring tiles have in common get identical bits in both.
@@ -127,14 +129,16 @@ class LabelSmoother {
   void enforce_own_labels();
   void grow(std::span<const float> growth);
   void distances_from_shares(int margin, std::span<const float> growth);
-  /// The amount by which the distance of a node's own label is to be decreased.
+  /// The amount by which the distance of a label is to be decreased at a node.
   struct Lift {
     int place;
+    std::uint16_t label;
     float by;
   };
   /// Steps 6 and 7.
   void enforce_contacts();
   void connect_edge(const MixedNode& n, int normal, std::vector<Lift>& lifts) const;
+  void connect_corner(const MixedNode& n, std::vector<Lift>& lifts) const;
   void widen_contact(const MixedNode& n, int normal, std::vector<Lift>& lifts) const;
   std::span<const std::uint16_t> labels_near(const MixedNode& n) const {
     return {near_.data() + n.first_label, n.label_count};

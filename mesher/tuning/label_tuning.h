@@ -40,6 +40,8 @@ struct LabelTuning {
     /// Min lead at the middle of an edge across which two voxels of a label are connected, voxels: half of
     /// that at the centres.
     static constexpr float min_connection = 0.0625F;
+    /// Likewise at a corner across which two voxels of a label are connected.
+    static constexpr float min_corner_connection = 0.0625F;
     /// Min distance of third labels from the middle of a voxel face shared by two labels, voxels. Otherwise
     /// the contact could shrink so far that no tet fits around it.
     static constexpr float min_contact = 0.25F;

@@ -428,3 +428,13 @@ def test_caps_of_holes_have_names():
     assert tetwright.mesh(duct, resolution=12, cap="inlet@0.5,0.5,0").stats["caps"]["patches"][1]["name"] == "cap_2"
     with pytest.raises(tetwright.UsageError, match="from the nearest cap"):
         tetwright.mesh(duct, resolution=12, cap="inlet@0.5,0.5,1.5")
+
+
+def test_surfaces_are_brought_into_the_space_of_the_first(tmp_path):
+    far = tmp_path / "far.obj"
+    far.write_text("# SPACE=RAS\n" + "".join(f"v {x} {y} {z}\n" for x, y, z in FAR_CUBE[0])
+                   + "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in CUBE_TRIANGLES))
+    made = tetwright.mesh({"near": CUBE, "far": far}, surface_space="LPS", resolution=8)
+    assert made.points.min(axis=0) == pytest.approx([-4, -4, 0]) and "far.obj' (brought into that of" in str(made.notes)
+    with pytest.raises(tetwright.UsageError, match="'LAS' is not LPS or RAS"):
+        tetwright.mesh(CUBE, surface_space="LAS", resolution=8)

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/io/surfaces/declared_space.h"
 #include "tools/app/command_line.h"
 #include "tools/app/option_values.h"
 
@@ -70,6 +71,15 @@ void add_bodies(CLI::App& app, CommandLine& c) {
        {"material", NestedRule::material}},
       "Treat closed parts inside others as: cavity, solid, material (a separate one), or auto "
       "(cavities if wound the opposite way, else solid)");
+  add_parsed<std::string>(
+      app, "--surface-space", c.options.bodies.surface_space, "LPS|RAS",
+      [](const std::string& text) {
+        std::string space = space_called(text);
+        if (space.empty()) throw CLI::ValidationError("--surface-space", "'" + text + "' is not LPS or RAS");
+        return space;
+      },
+      "Coordinate system of surfaces whose files name none; all inputs are brought into that of the first "
+      "one (default: that of the first one)");
   add_length(app, "--contact-tolerance", c.options.bodies.contact_tolerance,
              "Join bodies across gaps and overlaps up to this")
       ->default_str("0.001%");

@@ -17,6 +17,7 @@
 #include "tools/prepare/image_input.h"
 #include "tools/prepare/implant_input.h"
 #include "tools/prepare/mask_input.h"
+#include "tools/prepare/surface_spaces.h"
 #include "tools/prepare/value_input.h"
 
 namespace tetwright {
@@ -85,6 +86,8 @@ void check_body_options(const PrepareOptions& options) {
   if (!bodies.caps.empty()) throw UsageError("--cap is for surfaces, and the input is a segmented volume");
   if (bodies.base || bodies.thickness)
     throw UsageError("--base and --thicken are for surfaces, and the input is a segmented volume");
+  if (!bodies.surface_space.empty())
+    throw UsageError("--surface-space is for surfaces, and the input is a segmented volume");
   if (options.labels.protects_any())
     throw UsageError("--protect-labels is for surfaces in a segmented volume, and there is no surface");
 }
@@ -238,8 +241,9 @@ void name_solids(std::vector<SplitFile> files, const std::vector<Layer>& layers,
 
 /// Reads one material for each surface and level set, or with --split-solids for each solid of a surface.
 /// Tags start at 1, in the order of the inputs.
+/// \param volume that the surfaces are in, or null
 /// \param sheets receives the inputs that are sheets or partitions
-std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs,
+std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs, const LabelInput* volume,
                                                     std::vector<SheetSurface>& sheets, PrepareRun& run) {
   PrepareReport& report = run.report;
   const bool split_solids_asked = run.options.bodies.split_solids;
@@ -247,7 +251,10 @@ std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs,
   const auto add = [&](const std::string& name, const std::string& file, TriangleMesh surface) {
     surfaces.push_back({name, static_cast<MaterialTag>(surfaces.size() + 1), std::move(surface), file});
   };
-  const auto count = [&](TriangleMesh surface) {
+  SurfaceSpaces spaces(run.options.bodies.surface_space);
+  if (volume) spaces.begin_with(volume->space, volume->file);
+  const auto take = [&](TriangleMesh surface, const std::string& file) {
+    spaces.add(surface, file);
     report.input_triangles += surface.triangles.size();
     report.input_points += surface.points.size();
     return surface;
@@ -256,7 +263,7 @@ std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs,
     std::vector<Dropped> dropped;
     TriangleMesh surface = take_surface(input, &dropped, run.seconds_waited);
     report_dropped(dropped, input.name, report);
-    return count(std::move(surface));
+    return take(std::move(surface), input.name);
   };
   std::vector<SplitFile> split;
   for (Input& input : inputs) {
@@ -264,10 +271,10 @@ std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs,
     if (input.role != Input::Role::body) {
       sheets.push_back({input.material, read(input), file, input.role == Input::Role::partition});
     } else if (!input.material.empty()) {
-      add(input.material, file, input.is_vdb_file() ? count(read_one_level_set(input)) : read(input));
+      add(input.material, file, input.is_vdb_file() ? take(read_one_level_set(input), file) : read(input));
     } else if (input.is_vdb_file()) {
       for (NamedSurface& s : read_level_sets(file))
-        add(s.name.empty() ? file_stem(file) : s.name, file, count(std::move(s.surface)));
+        add(s.name.empty() ? file_stem(file) : s.name, file, take(std::move(s.surface), file));
     } else if (split_solids_asked) {
       std::vector<NamedSurface> solids = split_solids(read(input), input.material_name());
       if (solids.size() == 1) {
@@ -288,6 +295,9 @@ std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs,
     throw InputError(inputs.front().name, 0,
                      "--split-solids finds no solids, groups or labels that distinguish its parts; leave the "
                      "option out (it does not split what --material names)");
+  const std::vector<Diagnostic> findings = spaces.findings();
+  report.diagnostics.insert(report.diagnostics.end(), findings.begin(), findings.end());
+  report.space = spaces.space();
   name_solids(std::move(split), run.options.bodies.layers, surfaces, report.diagnostics);
   return surfaces;
 }
@@ -300,10 +310,11 @@ double diagonal_of(const std::vector<MaterialSurface>& surfaces) {
   return box.isEmpty() ? 0 : box.diagonal().norm();
 }
 
-MesherInput read_surfaces(std::vector<Input>& inputs, PrepareRun& run) {
+/// \param volume that the surfaces are in, or null
+MesherInput read_surfaces(std::vector<Input>& inputs, const LabelInput* volume, PrepareRun& run) {
   const BodyOptions& options = run.options.bodies;
   SheetOptions sheets;
-  std::vector<MaterialSurface> surfaces = read_material_surfaces(inputs, sheets.surfaces, run);
+  std::vector<MaterialSurface> surfaces = read_material_surfaces(inputs, volume, sheets.surfaces, run);
   std::vector<MaterialLayer> layers;
   for (const Layer& l : options.layers)
     layers.push_back({l.name, static_cast<MaterialTag>(surfaces.size() + layers.size() + 1), l.thickness});
@@ -342,10 +353,10 @@ ScanInput read_scan(std::vector<Input> inputs, PrepareRun& run) {
   for (Input& input : inputs) input.volume_file = run.options.volume_file;
   InputKinds kinds = find_kinds(inputs, run.options);
   const auto read = [&]() -> ScanInput {
-    if (!kinds.volume) return read_surfaces(inputs, run);
+    if (!kinds.volume) return read_surfaces(inputs, nullptr, run);
     LabelInput labels = read_volume(std::move(kinds.vdb_labels), inputs, run);
     if (kinds.implants.empty()) return labels;
-    MesherInput bodies = read_surfaces(kinds.implants, run);
+    MesherInput bodies = read_surfaces(kinds.implants, &labels, run);
     return join_implants(std::move(labels), std::move(bodies), run);
   };
   ScanInput input = read();

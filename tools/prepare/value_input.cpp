@@ -18,7 +18,9 @@ namespace tetwright {
 namespace {
 
 /// Space of the result's coordinates; empty: unknown.
-std::string space_of_mesh(const PrepareReport& report) { return report.volume ? report.volume->space : ""; }
+std::string space_of_mesh(const PrepareReport& report) {
+  return report.volume ? report.volume->space : report.space;
+}
 
 /// Brings a grid into the space of the mesh, and reports what was done.
 /// \param what "image" or "mask"

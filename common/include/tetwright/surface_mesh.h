@@ -23,7 +23,16 @@ struct TriangleMesh {
   /// distinguishes none. One entry may stand for no region.
   std::vector<SurfaceRegion> groups = {};
   std::vector<std::uint32_t> triangle_groups = {};
+  /// Coordinate system that the file names: "left-posterior-superior" or "right-anterior-superior", or empty.
+  /// Readers do not convert between them.
+  std::string space = {};
 };
+
+/// Converts a surface to another coordinate system, if both are such as "left-posterior-superior":
+/// coordinates along the axes that point the other way change their signs. Triangles keep their orientation.
+/// \param space see LabelGrid::space
+/// \return false if nothing changed: the systems are equal, or one of them is unknown
+bool change_space(TriangleMesh& surface, const std::string& space);
 
 struct NamedSurface {
   std::string name;

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/io/names/group_text.h"
+#include "common/io/surfaces/declared_space.h"
 #include "common/io/surfaces/surface_builder.h"
 #include "common/io/text/text_scanner.h"
 #include "common/number_text.h"
@@ -171,7 +172,9 @@ TriangleMesh read_obj(std::string_view bytes, const std::string& name, std::vect
                      "a face refers to point " + std::to_string(largest + 1) + ", but there are " +
                          std::to_string(surface.point_count()) +
                          " points; the file is truncated or was exported incorrectly");
-  return surface.finish(dropped, names.groups(name));
+  TriangleMesh mesh = surface.finish(dropped, names.groups(name));
+  mesh.space = space_in_comments(bytes, '#');
+  return mesh;
 }
 
 std::string write_obj(const TriangleMesh& mesh) {

@@ -11,6 +11,7 @@
 #include "common/io/names/group_text.h"
 #include "common/io/names/label_groups.h"
 #include "common/io/names/mesh_fields.h"
+#include "common/io/surfaces/declared_space.h"
 #include "common/io/surfaces/surface_builder.h"
 #include "common/io/text/text_scanner.h"
 #include "common/number_text.h"
@@ -82,6 +83,7 @@ struct PlyHeader {
   std::vector<Element> elements;
   /// Labels of groups by their unique names, from the comments of write_ply().
   std::map<std::string, std::int64_t> labels;
+  std::string space;  ///< see TriangleMesh::space
 };
 
 constexpr std::string_view group_property = "surface", group_comment = "surface ";
@@ -178,7 +180,9 @@ PlyHeader read_ply_header(TextScanner& in) {
       in.skip_line();
       break;
     } else if (keyword == "comment") {
-      read_group_name(in.rest_of_line(), header);
+      const std::string_view comment = in.rest_of_line();
+      read_group_name(comment, header);
+      if (header.space.empty()) header.space = declared_space(comment);
       continue;
     } else if (keyword != "obj_info" && !keyword.empty()) {
       in.fail("unknown keyword " + in_quotes(keyword) + " in the header");
@@ -399,7 +403,9 @@ TriangleMesh read_polygons(std::string_view bytes, const std::string& name, std:
   if (std::any_of(face->properties.begin(), face->properties.end(),
                   [](const Property& p) { return p.role == Role::label && p.name == group_property; }))
     take_names(header, groups);
-  return content.surface.finish(dropped, groups);
+  TriangleMesh mesh = content.surface.finish(dropped, groups);
+  mesh.space = header.space;
+  return mesh;
 }
 
 }  // namespace

@@ -4,10 +4,12 @@
 #include <cctype>
 #include <cstdint>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "common/io/encodings/byte_order.h"
 #include "common/io/names/group_text.h"
+#include "common/io/surfaces/declared_space.h"
 #include "common/io/surfaces/point_merger.h"
 #include "common/io/surfaces/surface_builder.h"
 #include "common/io/text/text_scanner.h"
@@ -18,8 +20,9 @@ namespace tetwright {
 
 namespace {
 
-constexpr std::size_t stl_header_size = 84;  ///< 80 arbitrary bytes and the number of triangles
-constexpr std::size_t record_size = 50;      ///< normal, three points, two bytes of attributes
+constexpr std::size_t stl_text_size = 80;                   ///< arbitrary bytes at the beginning
+constexpr std::size_t stl_header_size = stl_text_size + 4;  ///< and the number of triangles
+constexpr std::size_t record_size = 50;                     ///< normal, three points, two bytes of attributes
 
 TriangleMesh read_binary(std::string_view bytes, const std::string& name, std::size_t triangles,
                          std::vector<Dropped>* dropped) {
@@ -41,7 +44,9 @@ TriangleMesh read_binary(std::string_view bytes, const std::string& name, std::s
   }
   const std::size_t end = stl_header_size + triangles * record_size;
   surface.drop("bytes after the last triangle", bytes.size() - end);
-  return surface.finish(dropped);
+  TriangleMesh mesh = surface.finish(dropped);
+  mesh.space = declared_space(bytes.substr(0, stl_text_size));
+  return mesh;
 }
 
 /// Compares without regard to case.
@@ -98,10 +103,13 @@ TriangleMesh read_ascii(std::string_view bytes, const std::string& name, std::ve
   SurfaceBuilder surface(name);
   PointMerger merger(surface, 0);
   SolidNames solids;
+  std::string space;
   while (!in.at_end()) {
     expect(in, "solid");
     const std::size_t line = in.line();
-    solids.add(in.rest_of_line(), line);
+    const std::string_view title = in.rest_of_line();
+    solids.add(title, line);
+    if (space.empty()) space = declared_space(title);
     surface.begin_group(solids.last());
     for (;;) {
       const std::string_view word = in.word();
@@ -127,7 +135,9 @@ TriangleMesh read_ascii(std::string_view bytes, const std::string& name, std::ve
       surface.add_fan(corners);
     }
   }
-  return surface.finish(dropped, solids.groups(name));
+  TriangleMesh mesh = surface.finish(dropped, solids.groups(name));
+  mesh.space = std::move(space);
+  return mesh;
 }
 
 }  // namespace
@@ -140,7 +150,7 @@ TriangleMesh read_stl(std::string_view bytes, const std::string& name, std::vect
     throw InputError(name + ": only " + std::to_string(bytes.size()) +
                      " bytes, too short for an STL file; it is truncated or not STL");
   }
-  const std::size_t triangles = load<std::uint32_t>(bytes.data() + 80, !little_endian_machine);
+  const std::size_t triangles = load<std::uint32_t>(bytes.data() + stl_text_size, !little_endian_machine);
   const std::size_t expected = stl_header_size + triangles * record_size;
   // Files of both kinds may begin with "solid". A binary file has its size in the header; a text file has no
   // zero bytes.

@@ -10,6 +10,7 @@
 #include "common/io/names/group_text.h"
 #include "common/io/names/label_groups.h"
 #include "common/io/names/mesh_fields.h"
+#include "common/io/surfaces/declared_space.h"
 #include "common/io/surfaces/surface_builder.h"
 
 namespace tetwright {
@@ -70,6 +71,17 @@ void read_names(const VtuData& data, pugi::xml_node piece, std::vector<SurfaceRe
       if (group.number == number) group.name = name;
 }
 
+/// Reads the array SPACE of the whole dataset, by which 3D Slicer names the coordinate system.
+std::string read_space(const VtuData& data, pugi::xml_node piece) {
+  const pugi::xml_node fields = piece.parent().child("FieldData");
+  std::string space;
+  for (const pugi::xml_node node : fields.children())
+    if (holds_texts(node) && std::string_view(node.attribute("Name").as_string()) == "SPACE" &&
+        node.attribute("NumberOfTuples").as_int() == 1)
+      data.texts(node, 1, [&](std::string_view name) { space = space_called(name); });
+  return space;
+}
+
 /// \param point_fields receives the fields; may be null
 TriangleMesh read_poly_data(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped,
                             std::vector<MeshField>* point_fields) {
@@ -120,6 +132,7 @@ TriangleMesh read_poly_data(std::string_view bytes, const std::string& name, std
       std::string_view(label_array.attribute("Name").as_string()) == vtk_surface_field)
     read_names(data, piece, named, bytes.size());
   TriangleMesh mesh = surface.finish(dropped, named);
+  mesh.space = read_space(data, piece);
   if (dropped) {
     note_arrays(piece.child("PointData"), "fields of points", {}, *dropped);
     note_arrays(piece.child("CellData"), "fields of cells", label_array, *dropped);

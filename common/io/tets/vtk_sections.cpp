@@ -59,7 +59,7 @@ void VtkSections::read_head() {
                          "; is this a legacy VTK file?");
   if (version[0] < '1' || version[0] > '5' || (version.size() > 1 && version[1] != '.'))
     throw InputError(in_.name(), 1, "version " + in_quotes(version) + " of the format; 1 to 5 are supported");
-  in_.skip_line();  // the title
+  title_ = in_.rest_of_line();
   const std::string_view kind = in_.word();
   binary_ = lower_case(kind) == "binary";
   if (!binary_ && lower_case(kind) != "ascii") in_.fail("expected ASCII or BINARY, found " + in_quotes(kind));

@@ -68,6 +68,7 @@ class VtkSections {
   [[noreturn]] void fail_at(TextScanner begin, std::size_t k, const std::string& message) const;
 
   TextScanner in_;
+  std::string_view title_;  ///< second line of the file
   std::vector<Vec3> points_;
   bool has_points_ = false;
 

@@ -13,6 +13,7 @@
 #include "common/io/encodings/vtk_numbers.h"
 #include "common/io/names/label_groups.h"
 #include "common/io/names/mesh_fields.h"
+#include "common/io/surfaces/declared_space.h"
 #include "common/io/surfaces/surface_builder.h"
 #include "common/io/tets/vtk.h"
 #include "common/io/tets/vtk_sections.h"
@@ -54,6 +55,7 @@ class VtkSurfaceReader final : private VtkSections {
       for (SurfaceRegion& group : groups)
         if (const auto name = names_.find(group.number); name != names_.end()) group.name = name->second;
     result.surface = surface_.finish(dropped, groups);
+    result.surface.space = declared_space(title_);
     result.point_fields = std::move(point_fields_);
     if (!dropped) return result;
     other_.append_flat_to(*dropped);

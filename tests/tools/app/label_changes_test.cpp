@@ -6,6 +6,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
+#include "tests/mesher/label_adjacency.h"
 #include "tests/tools/program.h"
 #include "tetwright/io.h"
 #include "tetwright/mesh_quality.h"
@@ -25,9 +26,9 @@ class LabelChanges : public testing::Test {
     write_label_volume(made, folder_ / "labels.nrrd");
     return folder_ / "labels.nrrd";
   }
-  Answer prepare(const std::string& words) const {
-    return run("prepare " + words + " --target-tets 1500 -o " + (folder_ / "out.vtu") + " --stats " +
-               (folder_ / "s.json"));
+  Answer prepare(const std::string& words, int tets = 1500) const {
+    return run("prepare " + words + " --target-tets " + std::to_string(tets) + " -o " +
+               (folder_ / "out.vtu") + " --stats " + (folder_ / "s.json"));
   }
   nlohmann::json stats() const { return nlohmann::json::parse(contents(folder_ / "s.json")); }
   bool has(const std::string& code) const {
@@ -35,6 +36,23 @@ class LabelChanges : public testing::Test {
     for (const nlohmann::json& d : all.at("diagnostics"))
       if (d.at("code") == code) return true;
     return false;
+  }
+
+  /// Expects the parts and contacts of the voxels in the simplified mesh.
+  void expect_same(const std::array<int, 3>& size,
+                   const std::function<MaterialTag(int, int, int)>& label) const {
+    const Answer a = prepare(volume(size, label), 4000);
+    EXPECT_EQ(a.status, 0) << a.err;
+    Contacts touching;
+    const Adjacency expected = of_voxels(size, label, touching);
+    TetMesh mesh = read_tet_mesh(folder_ / "out.vtu").mesh;
+    mesh.interfaces = find_interfaces(mesh);
+    Adjacency found = of_mesh(mesh);
+    // Where four labels meet in an edge, two must touch that share no voxel face.
+    std::erase_if(found.contacts, [&](const auto& pair) {
+      return touching.contains(pair) && !expected.contacts.contains(pair);
+    });
+    EXPECT_TRUE(found == expected) << text_of(found) << "\n" << text_of(expected);
   }
 
   TemporaryFolder folder_;
@@ -97,6 +115,12 @@ TEST_F(LabelChanges, LabelsOneVoxelApartStayApart) {
   for (const InterfaceTriangle& t : find_interfaces(read_tet_mesh(folder_ / "out.vtu").mesh))
     EXPECT_FALSE(t.other.has_value());
 }
+
+TEST_F(LabelChanges, ThinLettersSideBySideKeepTheirPartsAndContacts) {
+  expect_same({19, 13, 7}, letters_a_and_b(3));
+}
+
+TEST_F(LabelChanges, CellsKeepTheirPartsAndContacts) { expect_same({20, 20, 20}, cells_in_a_ball(12)); }
 
 }  // namespace
 }  // namespace tetwright::label_changes_test

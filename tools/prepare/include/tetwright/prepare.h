@@ -182,6 +182,9 @@ struct BodyOptions {
   /// True: each solid, group or label of a surface's triangles becomes a material of that name instead of a
   /// patch.
   bool split_solids = false;
+  /// Coordinate system of surfaces whose files name none, see TriangleMesh::space. Empty: that of the first
+  /// input.
+  std::string surface_space;
 };
 
 class BrickScratch;
@@ -397,6 +400,7 @@ struct BrickReport {
 struct PrepareReport {
   std::vector<std::string> inputs;
   std::size_t input_triangles = 0, input_points = 0;
+  std::string space;                    ///< of surfaces, see TriangleMesh::space
   std::string material_field;           ///< cell field of a tet mesh that gives its materials
   std::optional<VolumeReport> volume;   ///< if the input is a segmented volume
   std::vector<Diagnostic> diagnostics;  ///< findings and shortfalls

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/images/grid_box.h"
+
+#include "common/message_text.h"
+
+namespace tetwright {
+
+namespace {
+
+std::string box_text(const Box3& box) { return place_text(box.low) + " to " + place_text(box.high); }
+
+}  // namespace
+
+Box3 box_of(const LabelGrid& grid) {
+  Box3 box;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vec3 index;
+    for (int a = 0; a < 3; ++a)
+      index[a] = (corner >> a & 1) ? grid.size[static_cast<std::size_t>(a)] - 0.5 : -0.5;
+    box.add(grid.to_input(index));
+  }
+  return box;
+}
+
+InputError boxes_apart(const std::string& file, const std::string& message, const std::string& first,
+                       const Box3& first_box, const std::string& second, const Box3& second_box) {
+  return {file, 0,
+          message + ": " + first + " reaches from " + box_text(first_box) + ", " + second + " from " +
+              box_text(second_box) + "; check origin, spacing, unit and coordinate system of both"};
+}
+
+}  // namespace tetwright

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/prepare/surface_spaces.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/common/io/expect_error.h"
+
+namespace tetwright::surface_spaces_test {
+namespace {
+
+const char* const lps = "left-posterior-superior";
+const char* const ras = "right-anterior-superior";
+
+TriangleMesh triangle(const std::string& space) {
+  TriangleMesh surface{{{1, 2, 3}, {4, 2, 3}, {4, 6, 3}}, {{0, 1, 2}}};
+  surface.space = space;
+  return surface;
+}
+
+/// The texts of all findings, one a line.
+std::string texts(const SurfaceSpaces& spaces) {
+  std::string out;
+  for (const Diagnostic& d : spaces.findings()) out += d.file + ": " + diagnostic_text(d) + "\n";
+  return out;
+}
+
+TEST(SurfaceSpaces, AreBroughtIntoThatOfTheVolume) {
+  SurfaceSpaces spaces("");
+  spaces.begin_with(ras, "head.nii.gz");
+  TriangleMesh lead = triangle(lps), plate = triangle(ras), screw = triangle("");
+  spaces.add(lead, "lead.stl");
+  spaces.add(plate, "plate.stl");
+  spaces.add(screw, "screw.stl");
+  EXPECT_EQ(lead.points[0], Vec3(-1, -2, 3));
+  EXPECT_EQ(lead.space, ras);
+  EXPECT_EQ(plate.points[0], Vec3(1, 2, 3));
+  EXPECT_EQ(screw.points[0], Vec3(1, 2, 3));
+  EXPECT_EQ(
+      texts(spaces),
+      "head.nii.gz: 1 surface in another space, left-posterior-superior: 'lead.stl' (brought into that of "
+      "the first input, right-anterior-superior)\n"
+      "head.nii.gz: 1 surface whose file names no space: 'screw.stl' (taken as it is, in that of the "
+      "first input, right-anterior-superior)\n");
+  EXPECT_EQ(spaces.findings()[1].code, DiagnosticCode::surface_space_unknown);
+  EXPECT_NE(spaces.findings()[1].remedy.find("--surface-space"), std::string::npos);
+}
+
+TEST(SurfaceSpaces, TheHeaderCountsMoreThanTheOption) {
+  SurfaceSpaces spaces(lps);
+  spaces.begin_with(ras, "head.nii.gz");
+  TriangleMesh lead = triangle(""), plate = triangle(ras);
+  spaces.add(lead, "lead.stl");
+  spaces.add(plate, "plate.stl");
+  EXPECT_EQ(lead.points[0], Vec3(-1, -2, 3));
+  EXPECT_EQ(plate.points[0], Vec3(1, 2, 3));
+  EXPECT_EQ(
+      texts(spaces),
+      "head.nii.gz: 1 surface in another space, left-posterior-superior: 'lead.stl' (brought into that of "
+      "the first input, right-anterior-superior)\n");
+}
+
+TEST(SurfaceSpaces, OfSurfacesAloneAreThatOfTheFirst) {
+  SurfaceSpaces spaces("");
+  TriangleMesh skin = triangle(lps), lead = triangle(ras), plate = triangle(ras);
+  spaces.add(skin, "skin.ply");
+  spaces.add(lead, "lead.ply");
+  spaces.add(plate, "plate.ply");
+  EXPECT_EQ(skin.points[0], Vec3(1, 2, 3));
+  EXPECT_EQ(lead.points[0], Vec3(-1, -2, 3));
+  EXPECT_EQ(spaces.space(), lps);
+  EXPECT_EQ(
+      texts(spaces),
+      "skin.ply: 2 surfaces in another space, right-anterior-superior: 'lead.ply', 'plate.ply' (brought "
+      "into that of the first input, left-posterior-superior)\n");
+}
+
+TEST(SurfaceSpaces, WithoutAnyHeaderNothingIsSaid) {
+  SurfaceSpaces spaces("");
+  TriangleMesh skin = triangle(""), lead = triangle("");
+  spaces.add(skin, "skin.ply");
+  spaces.add(lead, "lead.ply");
+  EXPECT_EQ(texts(spaces), "");
+  // One that names a space cannot be compared with the first one.
+  TriangleMesh plate = triangle(ras);
+  spaces.add(plate, "plate.ply");
+  EXPECT_EQ(plate.points[0], Vec3(1, 2, 3));
+  EXPECT_EQ(
+      texts(spaces),
+      "skin.ply: 1 surface in another space, right-anterior-superior: 'plate.ply' (taken as it is, since "
+      "it cannot be compared with that of the first input, unknown)\n");
+}
+
+TEST(SurfaceSpaces, AnOptionForAVolumeWithoutASpaceIsRefused) {
+  for (const char* space : {"", "scanner-xyz"}) {
+    SurfaceSpaces spaces(lps);
+    const std::string message = error_of<UsageError>([&] { spaces.begin_with(space, "head.nrrd"); });
+    EXPECT_NE(message.find("--surface-space"), std::string::npos) << message;
+    EXPECT_NE(message.find("head.nrrd"), std::string::npos) << message;
+  }
+}
+
+}  // namespace
+}  // namespace tetwright::surface_spaces_test
