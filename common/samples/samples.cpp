@@ -328,6 +328,32 @@ LabelVolume bone() {
   return volume;
 }
 
+/// An electrode for `organs`: an octagonal prism from inside the organs to beyond the volume.
+TriangleMesh lead() {
+  constexpr double wide = 1.5, narrow = 0.625;  // coordinates of corners: an octagon but for 0.3 %
+  constexpr std::array<std::array<double, 2>, 8> corners{{{wide, -narrow},
+                                                          {wide, narrow},
+                                                          {narrow, wide},
+                                                          {-narrow, wide},
+                                                          {-wide, narrow},
+                                                          {-wide, -narrow},
+                                                          {-narrow, -wide},
+                                                          {narrow, -wide}}};
+  TriangleMesh mesh;
+  for (const double along : {-4.0, 34.0})
+    for (const auto& [x, y] : corners)
+      mesh.points.emplace_back(4 + x + along / 16, 1 + y - along / 32, along);
+  for (Index i = 0; i < 8; ++i) {
+    const Index next = (i + 1) % 8;
+    mesh.triangles.push_back({i, next, 8 + next});
+    mesh.triangles.push_back({i, 8 + next, 8 + i});
+    if (i < 1 || i > 6) continue;
+    mesh.triangles.push_back({0, next, i});
+    mesh.triangles.push_back({8, 8 + i, 8 + next});
+  }
+  return mesh;
+}
+
 LabelVolume usual_foam() {
   return read_all(Foam(default_foam_voxels, default_foam_grains(default_foam_voxels)), foam_name);
 }
@@ -352,6 +378,7 @@ const std::vector<NamedSample>& samples() {
       {"random-interior-small", +[] { return random_interior(3, 170, 0.25); }},
       {"random-interior-large", +[] { return random_interior(14, 30000, 0.07); }},
       {"organs", organs},
+      {"lead", lead},
       {"bone", bone},
       {foam_name, usual_foam},
       {"heater_below",

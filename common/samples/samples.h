@@ -13,7 +13,7 @@ namespace tetwright {
 
 /// Names of the built-in samples.
 /// - Surfaces around the origin, closed and oriented outwards: sphere, torus, cube, two_spheres, knot; and
-///   open_sphere, a sphere with a hole.
+///   open_sphere, a sphere with a hole; lead, an electrode that leads into the volume of organs.
 /// - Five boxes that share faces: heater_left, heater_core and heater_right in a row, between the air
 /// heater_below
 ///   and heater_above. The sides of each are groups, minX to maxZ.

@@ -153,8 +153,13 @@ class Fitter {
   /// True for vertices of thickened walls in passes that would spoil their tets.
   bool must_stay(Index p, double floor) const {
     const WallChanges* walls = field_.wall_changes();
-    return walls && floor < Fitting::wall_floor && labels_.of(p).kind == Kind::patch &&
-           walls->contains(field_.frame().to_grid(mesh_.points[p]));
+    if (!walls || floor >= Fitting::wall_floor || labels_.of(p).kind != Kind::patch) return false;
+    const Vec3 at = field_.frame().to_grid(mesh_.points[p]);
+    if (!walls->contains(at)) return false;
+    // Around bodies with smaller cells all distances are exact, and few walls are thickened.
+    const auto cell = surface_.cell_of(surface_.sheet_of(*labels_.of(p).patches.begin()));
+    return !cell ||
+           walls->parallel_thickness(at) * field_.frame().cell_size < Fitting::thick_wall * *cell;
   }
 
   std::vector<PointMove> remaining_moves(double floor) {

@@ -78,9 +78,6 @@ class FeatureSurface : public ReferenceSurface {
   /// Whether the bodies are in a volume with labels.
   bool is_surrounded() const { return surroundings_ != nullptr; }
   std::optional<double> creased_size() const override { return creased_size_; }
-  bool has_curves_on(MaterialOrOutside first, MaterialOrOutside second) const override {
-    return is_surrounded() && !is_beside_bodies(first, second);
-  }
   /// True for a face between two labels around the bodies, or between one and the outside.
   bool is_beside_bodies(const InterfaceTriangle& face) const {
     return is_beside_bodies(face.material, face.other);

@@ -67,10 +67,12 @@ class CarvedField::Sampler final : public FieldSampler {
         bodies_->values(point, {&own, 1}, distances);
         return std::max(distances[0], -protection);
       }
-      if (r == label.region) return depth;
+      // Inside a body only protected labels are across an interface.
+      const float base = is_protected(r) ? -std::fabs(depth) : depth;
+      if (r == label.region) return base;
       const RegionIndex both[2] = {r, label.region};
       labels_->values(place, both, distances);
-      return depth + (distances[0] - distances[1]);
+      return base + (distances[0] - distances[1]);
     };
     const float middle = value_of(nearest.region) + nearest.margin;
     for (const RegionIndex r : regions) *out++ = value_of(r) - middle;
@@ -202,8 +204,9 @@ class CarvedField::Sampler final : public FieldSampler {
         bodies_->values_and_gradients(point, {&body, 1}, out, slopes);
         if (-protection.value > *out) *out = -protection.value, *slopes = -protection.slope;
       } else {
-        *out = depth.value;
-        *slopes = depth.slope;
+        const double sign = is_protected(r) && depth.value > 0 ? -1 : 1;
+        *out = sign * depth.value;
+        *slopes = sign * depth.slope;
         if (r != label) {
           const RegionIndex both[2] = {r, label};
           double values[2];

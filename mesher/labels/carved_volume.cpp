@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "common/geometry/box_tree.h"
+#include "common/geometry/morton.h"
 #include "common/geometry/surface_tree.h"
+#include "common/random.h"
 #include "mesher/domain/narrow_band.h"
 #include "mesher/tuning/label_tuning.h"
 #include "tetwright/resources.h"
@@ -54,10 +56,14 @@ class Carving {
     const NearestRegion there = nearest(centre);
     if (is_far(there)) return there.region != outside_region ? 1 : 0;
     constexpr int n = LabelTuning::Carving::samples;
+    // Samples at random places in equal cubes: regular ones would err alike in all voxels along a face.
+    Random random(morton_encode(static_cast<int>(centre[0]), static_cast<int>(centre[1]),
+                                static_cast<int>(centre[2])));
     int inside = 0;
     for (int k = 0; k < n * n * n; ++k) {
-      const Vec3 at(k % n, k / n % n, k / (n * n));
-      inside += is_enclosed(centre + ((at + Vec3::Constant(0.5)) / n - Vec3::Constant(0.5)));
+      const Vec3 cube(k % n, k / n % n, k / (n * n));
+      const Vec3 at(random.uniform(), random.uniform(), random.uniform());
+      inside += is_enclosed(centre + ((cube + at) / n - Vec3::Constant(0.5)));
     }
     return static_cast<double>(inside) / (n * n * n);
   }

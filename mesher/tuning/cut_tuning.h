@@ -200,6 +200,8 @@ struct CutTuning {
     static constexpr int unfolding_rounds = 20;
     /// Thickened walls move back as long as tets keep this quality (0.02 sr); otherwise they are reported.
     static constexpr double wall_floor = 0.2;
+    /// Walls of this many cells are not thickened.
+    static constexpr double thick_wall = 2;
     /// Steps tried to make room, in mean edges at the point, and number of sweeps over all points.
     static constexpr double room_steps[] = {0.4, 0.2, 0.1, 0.05};
     static constexpr int room_sweeps = 2;

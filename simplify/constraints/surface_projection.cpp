@@ -67,7 +67,6 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, std::span<const V
     std::uint64_t key;
     PatchId patch;
     bool sheet;
-    std::uint32_t face;
   };
   // The edges of a range of first points are sorted at a time: all of them would take more memory than the
   // surface.
@@ -79,19 +78,16 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, std::span<const V
             for (int k = 0; k < 3; ++k) {
               const auto [p, q] = std::minmax(faces[i].ids[k], faces[i].ids[(k + 1) % 3]);
               if (p >= low && p < high)
-                out.push_back({std::uint64_t{p} << 32 | q, faces[i].patch, faces[i].is_sheet(),
-                               static_cast<std::uint32_t>(i)});
+                out.push_back({std::uint64_t{p} << 32 | q, faces[i].patch, faces[i].is_sheet()});
             }
         });
     parallel_sort(edges, [](const Edge& x, const Edge& y) {
-      if (x.key != y.key) return x.key < y.key;
-      return x.patch != y.patch ? x.patch < y.patch : x.face < y.face;
+      return x.key != y.key ? x.key < y.key : x.patch < y.patch;
     });
     return edges;
   };
   PointCopies points(positions);
   std::vector<ProjectionTree::Item> segments;
-  CurvesOnPatches on_patches;
   const auto add_curves = [&](const std::vector<Edge>& edges) {
     for (std::size_t i = 0; i < edges.size();) {
       std::size_t j = i + 1;
@@ -107,10 +103,6 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, std::span<const V
           (sheet || !given_has_curve(positions[p], positions[q], j - i != 2))) {
         const Index a = points.number(p), b = points.number(q);
         segments.push_back({{a, b, b}, {}});
-        if (given_patches_)
-          for (std::size_t k = i; k < j; ++k)
-            if (const InterfaceFace& f = faces[edges[k].face]; has_curves_on(f))
-              for (const Index end : {a, b}) on_patches[end].insert({f.inside, f.across, f.patch});
       }
       i = j;
     }
@@ -118,7 +110,6 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, std::span<const V
   const std::size_t ranges = 1 + faces.size() / Projection::faces_at_once;
   for (std::size_t range = 0; range < ranges; ++range)
     add_curves(edges_from(range * positions.size() / ranges, (range + 1) * positions.size() / ranges));
-  move_onto_patches(on_patches, points.points, segments);
   // Curves end or branch where the number of segments is not two.
   std::vector<std::uint32_t> degrees(points.points.size(), 0);
   for (const ProjectionTree::Item& s : segments)
@@ -130,34 +121,6 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, std::span<const V
   curves_ = ProjectionTree(std::move(points.points), std::move(segments));
 }
 
-bool SurfaceProjection::has_curves_on(const InterfaceFace& face) const {
-  return !face.is_sheet() && given_->has_curves_on(tag_of(face.inside), tag_of(face.across));
-}
-
-/// Moves points of curves onto the patches of the given surface that the curves are on: in a dense mesh tets
-/// may keep them off these.
-void SurfaceProjection::move_onto_patches(const CurvesOnPatches& on_patches, std::vector<Vec3>& points,
-                                          const std::vector<ProjectionTree::Item>& segments) const {
-  if (on_patches.empty()) return;
-  std::vector<double> reach(points.size(), 0);
-  for (const ProjectionTree::Item& s : segments) {
-    const double length = (points[s.corners[1]] - points[s.corners[0]]).norm();
-    for (const Index p : {s.corners[0], s.corners[1]}) reach[p] = std::max(reach[p], length);
-  }
-  const WorkingSpace& space = mesh_->space();
-  for (const auto& [p, patches] : on_patches) {
-    Vec3& at = points[p];
-    const auto& [inside, across, patch] = *patches.begin();
-    const bool one_patch = std::all_of(patches.begin(), patches.end(),
-                                       [&, own = patch](const auto& k) { return std::get<2>(k) == own; });
-    if (one_patch) {
-      if (const auto on = onto_surface(at, inside, across, patch, reach[p])) at = *on;
-    } else if (const auto on = given_->onto_crease(space.to_input(at), reach[p] / space.scale())) {
-      at = space.to_working(*on);
-    }
-  }
-}
-
 bool SurfaceProjection::given_has_curve(const Vec3& p, const Vec3& q, bool junction) const {
   if (!given_patches_ || (junction && !given_->has_junctions())) return false;
   const WorkingSpace& space = mesh_->space();
@@ -165,18 +128,17 @@ bool SurfaceProjection::given_has_curve(const Vec3& p, const Vec3& q, bool junct
   return given_->onto_crease(space.to_input((p + q) / 2), reach).has_value();
 }
 
-MaterialOrOutside SurfaceProjection::tag_of(RegionId region) const {
-  if (region == outside_id) return {};
-  return mesh_->tag(region);
-}
-
 std::optional<Vec3> SurfaceProjection::onto_surface(const Vec3& p, RegionId first, RegionId second,
                                                     PatchId patch, double max_distance) const {
   if (!given_ || first == second) return surfaces_.nearest(p, kind_of(first, second, patch), max_distance);
+  const auto tag = [&](RegionId r) -> MaterialOrOutside {
+    if (r == outside_id) return {};
+    return mesh_->tag(r);
+  };
   const WorkingSpace& space = mesh_->space();
-  const auto place = given_patches_ ? given_->onto_patch(space.to_input(p), tag_of(first), tag_of(second),
-                                                         patch, max_distance / space.scale())
-                                    : given_->project(space.to_input(p), tag_of(first), tag_of(second),
+  const auto place = given_patches_ ? given_->onto_patch(space.to_input(p), tag(first), tag(second), patch,
+                                                         max_distance / space.scale())
+                                    : given_->project(space.to_input(p), tag(first), tag(second),
                                                       max_distance / space.scale());
   if (!place) return {};
   return space.to_working(*place);

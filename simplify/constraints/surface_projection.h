@@ -2,11 +2,8 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <optional>
-#include <set>
 #include <span>
-#include <tuple>
 #include <vector>
 
 #include "common/geometry/projection_tree.h"
@@ -46,7 +43,7 @@ class SurfaceProjection {
   bool lacks_creases(const Vec3& p) const {
     return given_patches_ && given_->lacks_creases(mesh_->space().to_input(p));
   }
-  /// ReferenceSurface::creased_size() of the given surface.
+  /// ReferenceSurface::creased_size() of the given surface, working coordinates.
   std::optional<double> creased_size() const {
     const auto size = given_patches_ ? given_->creased_size() : std::nullopt;
     return size ? std::optional(*size * mesh_->space().scale()) : std::nullopt;
@@ -61,12 +58,6 @@ class SurfaceProjection {
   std::optional<Vec3> onto_corner(const Vec3& p, double max_distance) const;
 
  private:
-  /// The patches, between two regions each, that points of curves are on.
-  using CurvesOnPatches = std::map<Index, std::set<std::tuple<RegionId, RegionId, PatchId>>>;
-  MaterialOrOutside tag_of(RegionId region) const;
-  bool has_curves_on(const InterfaceFace& face) const;
-  void move_onto_patches(const CurvesOnPatches& on_patches, std::vector<Vec3>& points,
-                         const std::vector<ProjectionTree::Item>& segments) const;
   /// Whether the given surface itself has the curve that a junction edge or patch border follows.
   bool given_has_curve(const Vec3& p, const Vec3& q, bool junction) const;
   /// The nearer of `own` and the given surface's answer, if that has patches.

@@ -21,6 +21,7 @@ nlohmann::json volume_json(const VolumeReport& v,
                       {"voxels", l.voxels},
                       {"voxels_in_file", l.voxels_in_file},
                       {"volume", voxel * expected_volume(l)}});
+    if (l.carved) labels.back()["carved_voxels"] = *l.carved;
     if (const auto colour = colours.find(l.tag); colour != colours.end())
       labels.back()["color"] = colour->second;
   }

@@ -71,11 +71,6 @@ class ReferenceSurface {
   /// Diagonal of the bounding box, input units, of the smallest body that has creases: how far edges of the
   /// mesh may be from them is a share of it. std::nullopt: that of the mesh.
   virtual std::optional<double> creased_size() const { return {}; }
-  /// Whether junction curves of the mesh that onto_crease() does not know lie on the patches of the interface
-  /// between two regions, and thus follow them: curves in which regions around a body meet its surface.
-  virtual bool has_curves_on(MaterialOrOutside /*first*/, MaterialOrOutside /*second*/) const {
-    return false;
-  }
   /// True where creases that bound patches were given up: onto_crease() does not know them, and borders of
   /// patches in the mesh are preserved like its junction curves.
   virtual bool lacks_creases(const Vec3& /*point*/) const { return false; }

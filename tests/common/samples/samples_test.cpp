@@ -28,6 +28,7 @@ TEST(Samples, VolumesAreThoseOfTheirShapesAndPositive) {
   EXPECT_NEAR(of("cube"), 8, 1e-12);
   EXPECT_NEAR(of("two_spheres"), 4 * pi / 3 * (1 + 0.421875), 0.04);
   EXPECT_GT(of("knot"), 10);
+  EXPECT_NEAR(of("lead"), 38 * (9 - 2 * 0.875 * 0.875), 1e-12);
 }
 
 TEST(Samples, ClosedButForTheOpenSphere) {

@@ -80,8 +80,8 @@ def _texts(key: str, kind: str, value: Any, inputs: Inputs) -> Iterable[bytes]:
         return [_name(key, str(name)) + b"=" + _number(key, item) for name, item in value.items()]
     if key in ("iso", "outside_probability", "smooth"):
         return [_number(key, item) for item in (value if isinstance(value, list) else [value])]
-    if key == "labels" and not isinstance(value, str):
-        return [_label_ranges(value)]
+    if key in ("labels", "protect_labels") and not isinstance(value, str):
+        return [_label_ranges(key, value)]
     if key in ("spacing", "dimensions") and not isinstance(value, str):
         return [b",".join(_number(key, item) for item in (value if np.ndim(value) == 1 else [value]))]
     if key == "layer" and not isinstance(value, (str, list)):
@@ -144,11 +144,13 @@ def _numbers(key: str, value: Any) -> bytes:
     return _number(key, value)
 
 
-def _label_ranges(value: Any) -> bytes:
+def _label_ranges(key: str, value: Any) -> bytes:
+    """Formats labels, pairs of the first and last of several, and names, which `protect_labels` may have."""
     if isinstance(value, np.ndarray):
         value = np.atleast_1d(value).tolist()
     items = value if isinstance(value, (list, tuple, set, range)) else [value]
     if any(isinstance(i, tuple) and len(i) != 2 for i in items):
-        raise _core.UsageError(f"labels is {value!r}; give labels, and pairs of the first and last of several")
-    return b",".join(b"-".join(_whole_number("labels", end) for end in i) if isinstance(i, tuple) else
-                     _whole_number("labels", i) for i in items)
+        raise _core.UsageError(f"{key} is {value!r}; give labels, and pairs of the first and last of several")
+    return b",".join(plain_text(i, key) if isinstance(i, str) and key == "protect_labels" else
+                     b"-".join(_whole_number(key, end) for end in i) if isinstance(i, tuple) else
+                     _whole_number(key, i) for i in items)
