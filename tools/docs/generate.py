@@ -28,7 +28,7 @@ UNITS = {
     "--only-below": "steradians", "--max-iterations": "iterations", "--beta": "ideal edges", "--gamma": "", "--resolution": "cells",
     "--voxel-size": "input units", "--adaptivity": "finest cells", "--max-refinement": "halvings", "--feature-angle": "degrees",
     "--voxels": "voxels", "--grains": "grains", "--layer": "input units", "--region": "input units", "--cap": "input units", "--contact-tolerance": "input units, or % of the diagonal", "--extend": "input units, or % of the diagonal",
-    "--base": "input units", "--thicken": "input units, or % of the diagonal", "--min-voxels": "voxels", "--spacing": "input units", "--dimensions": "voxels", "--outside-label": "label", "--labels": "labels", "--order": "", "--min-modulus": "of the modulus", "--bins": "of the image", "--parts": "parts", "--jobs": "jobs",
+    "--base": "input units", "--thicken": "input units, or % of the diagonal", "--min-voxels": "voxels", "--spacing": "input units", "--dimensions": "voxels", "--outside-label": "label", "--labels": "labels", "--protect-labels": "labels", "--order": "", "--min-modulus": "of the modulus", "--bins": "of the image", "--parts": "parts", "--jobs": "jobs",
 }
 NAMED_TYPES = ("NAME=FILE", "NAME=THICKNESS", "NAME=IMAGE", "NAME=N|A,B,...", "NAME=A,B[,S,T]")
 COMMANDS_ORDER = ("prepare", "mesh", "simplify", "improve", "values", "check", "batch", "sample")

@@ -256,6 +256,15 @@ def organs(studio):
     studio.picture("organs", "organs.html", "cut=y,0.5&look=-68,20,1.9")
 
 
+def implant(studio):
+    """A surface in a segmented volume, cut open."""
+    studio.tetwright("sample", "organs", "-o", "organs.nrrd")
+    studio.tetwright("sample", "lead", "-o", "lead.stl")
+    studio.tetwright("prepare", "organs.nrrd", "--labels", "1-3", "--material", "lead=lead.stl", "-o", "implant.vtu",
+                     "--target-tets", 20000, "--report", "implant.html")
+    studio.picture("implant", "implant.html", "cut=y,0.5&look=-68,20,1.9")
+
+
 def part(studio):
     """A part whose edges stay sharp."""
     gear(studio.path("gear.obj"))
@@ -341,7 +350,7 @@ def horizons(studio):
     studio.pair("horizons", page, ("up=y&look=28,22,2.7", surfaces), ("up=y&cut=z,0.5&look=28,22,2.4", ()))
 
 
-PICTURES_BY_NAME = {make.__name__: make for make in (scan, organs, part, layers, report, heater, rock, vessel, fan, horizons)}
+PICTURES_BY_NAME = {make.__name__: make for make in (scan, organs, implant, part, layers, report, heater, rock, vessel, fan, horizons)}
 
 
 def main():

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: Apache-2.0
+
+// Tests of surfaces in segmented volumes, through the program.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "tests/mesher/test_surfaces.h"
+#include "tests/tools/program.h"
+#include "tetwright/io.h"
+#include "tetwright/mesh_quality.h"
+
+namespace tetwright::implants_test {
+namespace {
+
+class Implants : public testing::Test {
+ protected:
+  /// Two labels, 3 below and 7 above, in a block of 16^3 voxels with outside around it.
+  std::string volume() const {
+    LabelVolume made;
+    made.size = {20, 20, 20};
+    made.space = "right-anterior-superior";
+    for (int z = 0; z < 20; ++z)
+      for (int y = 0; y < 20; ++y)
+        for (int x = 0; x < 20; ++x) {
+          const bool inside = std::min({x, y, z}) >= 2 && std::max({x, y, z}) < 18;
+          made.labels.push_back(!inside ? 0 : z < 10 ? 3 : 7);
+        }
+    write_label_volume(made, folder_ / "labels.nrrd");
+    return folder_ / "labels.nrrd";
+  }
+  std::string box(const std::string& name, const Vec3& low, const Vec3& high) const {
+    write_surface(make_box(low, high), folder_ / name);
+    return folder_ / name;
+  }
+  std::string block() const { return box("block.stl", Vec3(5.3, 6.2, 5.1), Vec3(12.7, 11.9, 13.8)); }
+  Answer mesh(const std::string& words, const std::string& out = "out.vtu") const {
+    return run("mesh " + words + " -o " + (folder_ / out) + " --stats " + (folder_ / "s.json"));
+  }
+  nlohmann::json stats() const { return nlohmann::json::parse(contents(folder_ / "s.json")); }
+  std::map<std::string, double> volumes() const {
+    std::map<std::string, double> all;
+    const nlohmann::json read = stats();
+    for (const nlohmann::json& m : read.at("dense").at("materials")) all[m.at("name")] = m.at("volume");
+    return all;
+  }
+
+  static constexpr double block_volume = 7.4 * 5.7 * 8.7;
+  TemporaryFolder folder_;
+};
+
+TEST_F(Implants, CarveLabels) {
+  const Answer a = mesh(volume() + " --material implant=" + block() + " --surface-space RAS");
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_EQ(a.err, "");
+  const auto is = volumes();
+  EXPECT_NEAR(is.at("implant"), block_volume, 1e-4 * block_volume);
+  EXPECT_NEAR(is.at("implant") + is.at("label_3") + is.at("label_7"), 16 * 16 * 16, 0.01 * 16 * 16 * 16);
+  const nlohmann::json labels = stats().at("input").at("volume").at("labels");
+  EXPECT_NEAR(labels[0].at("carved_voxels"), 7.4 * 5.7 * 4.4, 0.01 * 7.4 * 5.7 * 4.4);
+  // The tag follows those of the labels.
+  EXPECT_EQ(read_tet_mesh(folder_ / "out.vtu").mesh.material_names.at(8), "implant");
+}
+
+TEST_F(Implants, AreSimplified) {
+  const Answer a = run("prepare " + volume() + " " + block() + " --surface-space RAS --target-tets 3000 -o " +
+                       (folder_ / "p.msh") + " --stats " + (folder_ / "s.json"));
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_EQ(stats().at("creases").at("corners"), 8);
+  EXPECT_EQ(run("check " + (folder_ / "p.msh")).status, 0);
+}
+
+TEST_F(Implants, ProtectedLabelsStay) {
+  const std::string words = volume() + " --material implant=" + block() + " --surface-space RAS ";
+  for (const char* list : {"--protect-labels 7", "--protect-labels 5-9", "--protect-labels label_7"}) {
+    const Answer a = mesh(words + list);
+    EXPECT_EQ(a.status, 0) << list << a.err;
+    EXPECT_NEAR(volumes().at("label_7"), 16 * 16 * 8, 0.01 * 16 * 16 * 8) << list;
+  }
+  for (const auto& [list, message] : {std::pair("4", "label 4"), std::pair("bone", "'bone'"),
+                                      std::pair("8-9", "labels from 8 to 9"), std::pair("3,", "empty")}) {
+    const Answer a = mesh(words + "--protect-labels " + list);
+    EXPECT_EQ(a.status, 2) << list;
+    EXPECT_NE(a.err.find(message), std::string::npos) << a.err;
+  }
+}
+
+TEST_F(Implants, AreNotMirrored) {
+  // In LPS: x and y have the other sign.
+  const std::string file = box("lps.stl", Vec3(-12.7, -11.9, 5.1), Vec3(-5.3, -6.2, 13.8));
+  const Answer a = mesh(volume() + " --material implant=" + file + " --surface-space LPS");
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_NE(a.err.find("brought into"), std::string::npos) << a.err;
+  EXPECT_NEAR(volumes().at("implant"), block_volume, 1e-4 * block_volume);
+  // Taken as it is the surface misses the volume.
+  const Answer apart = mesh(volume() + " --material implant=" + file);
+  EXPECT_EQ(apart.status, 3);
+  EXPECT_NE(apart.err.find("(-12.7, -11.9, 5.1)"), std::string::npos) << apart.err;
+  EXPECT_NE(apart.err.find("--surface-space"), std::string::npos) << apart.err;
+}
+
+TEST_F(Implants, BodiesLeaveTheVolumeWhole) {
+  const std::string file = box("lead.stl", Vec3(8.2, 8.4, 6.1), Vec3(11.9, 11.7, 27.3));
+  const Answer a = mesh(volume() + " --material lead=" + file + " --surface-space RAS");
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_NE(a.err.find("added around the volume"), std::string::npos) << a.err;
+  EXPECT_NEAR(volumes().at("lead"), 3.7 * 3.3 * 21.2, 1e-4 * 3.7 * 3.3 * 21.2);
+}
+
+TEST_F(Implants, CallsThatDoNotFit) {
+  const std::string labels = volume(), surface = block();
+  for (const auto& [words, message] :
+       {std::pair(surface + " " + labels, "give volumes first"),
+        std::pair(labels + " " + surface + " --layer skin=1", "--layer"),
+        std::pair(labels + " " + surface + " --sheet s=" + surface, "--sheet"),
+        std::pair(labels + " --material label_3=" + surface, "both a label"),
+        std::pair(labels + " --protect-labels 3", "there is no surface"),
+        std::pair(surface + " --protect-labels 3", "no input is a volume"),
+        std::pair(labels + " " + surface + " --voxel-size 3", "two voxels")}) {
+    const Answer a = mesh(words);
+    EXPECT_EQ(a.status, 2) << words;
+    EXPECT_NE(a.err.find(message), std::string::npos) << a.err;
+  }
+  const Answer bricks = run("prepare " + labels + " " + surface + " --target-tets 1000 --bricks 64 -o " +
+                            (folder_ / "b.vtu"));
+  EXPECT_EQ(bricks.status, 2);
+  EXPECT_NE(bricks.err.find("--bricks"), std::string::npos) << bricks.err;
+}
+
+TEST_F(Implants, WhatSwallowsALabelIsNamed) {
+  const std::string file = box("all.stl", Vec3(1, 1, 9), Vec3(18.5, 18.5, 18.5));
+  const Answer a = mesh(volume() + " --material all=" + file + " --surface-space RAS");
+  EXPECT_EQ(a.status, 3);
+  EXPECT_NE(a.err.find("nothing is left of 'label_7'"), std::string::npos) << a.err;
+}
+
+TEST_F(Implants, ThreadsDoNotChangeTheBytes) {
+  const std::string words = volume() + " --material implant=" + block() + " --quiet ";
+  ASSERT_EQ(mesh(words + "--threads 1", "1.vtu").status, 0);
+  ASSERT_EQ(mesh(words + "--threads 3", "3.vtu").status, 0);
+  EXPECT_EQ(contents(folder_ / "1.vtu"), contents(folder_ / "3.vtu"));
+}
+
+}  // namespace
+}  // namespace tetwright::implants_test
