@@ -219,7 +219,7 @@ void measure_walls(DenseMesh& dense, const MaterialField& field) {
       thickened_report(find_thickened_walls(points, on_interface, *walls, *dense.field), frame);
 }
 
-/// What is expected of the surfaces of a volume alone.
+/// The estimate for the surfaces of a volume alone.
 MesherEstimate estimate_of_bodies(const ImplantedVolume& volume, MesherOptions options) {
   options.voxel_size = cell_size(volume.labels, options);
   return estimate_mesh(volume.bodies, options);
@@ -338,7 +338,7 @@ class SurfaceMeshing {
     report_.carved = measure_carving(*volume_, *bodies_.field, stages_.progress());
     interface_voxels_ = field_->interface_voxels();
     thin_.finer = combine(std::move(thin_.finer), std::move(label_cells_));
-    // What protected labels keep of a body is not known from its surface.
+    // The part of a body that protected labels leave is not known from its surface.
     if (!volume_->protected_labels.empty()) report_.expected.clear();
   }
   /// The layer in which interfaces of labels turn towards bodies, voxels of the frame.

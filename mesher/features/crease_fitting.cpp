@@ -158,8 +158,7 @@ class Fitter {
     if (!walls->contains(at)) return false;
     // Around bodies with smaller cells all distances are exact, and few walls are thickened.
     const auto cell = surface_.cell_of(surface_.sheet_of(*labels_.of(p).patches.begin()));
-    return !cell ||
-           walls->parallel_thickness(at) * field_.frame().cell_size < Fitting::thick_wall * *cell;
+    return !cell || walls->parallel_thickness(at) * field_.frame().cell_size < Fitting::thick_wall * *cell;
   }
 
   std::vector<PointMove> remaining_moves(double floor) {

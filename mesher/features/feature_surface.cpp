@@ -273,7 +273,7 @@ std::optional<FeatureSurface::Place> FeatureSurface::nearest_of_patch(const Vec3
 
 namespace {
 
-/// The nearer one of two places, if there are any.
+/// The nearer one of two points, if there are any.
 std::optional<Vec3> nearer(const Vec3& point, const std::optional<Vec3>& a, const std::optional<Vec3>& b) {
   if (!a || !b) return a ? a : b;
   return (*b - point).squaredNorm() < (*a - point).squaredNorm() ? b : a;

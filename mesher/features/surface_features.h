@@ -33,7 +33,7 @@ SurfaceFeatures find_features(const MesherInput& input, const MesherOptions& opt
 /// True if there are creases, junctions or named groups to fit.
 bool has_features(const MesherInput& input, const SurfaceFeatures& features);
 
-/// What surrounds bodies.
+/// The surroundings of bodies.
 enum class Surroundings : std::uint8_t {
   outside,
   labels,           ///< of a segmented volume, which the bodies carve

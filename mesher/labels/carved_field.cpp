@@ -22,7 +22,7 @@ std::vector<FieldRegion> all_regions(const MaterialField& labels, const Material
 
 }  // namespace
 
-/// What the fields of all refinements share.
+/// Data that the fields of all refinements share.
 struct CarvedField::Rules {
   std::vector<RegionIndex> of_protected, of_others;  ///< regions of the volume
   std::vector<std::uint8_t> is_protected;            ///< by region of the volume; empty: none is

@@ -56,9 +56,9 @@ class Carving {
     const NearestRegion there = nearest(centre);
     if (is_far(there)) return there.region != outside_region ? 1 : 0;
     constexpr int n = LabelTuning::Carving::samples;
-    // Samples at random places in equal cubes: regular ones would err alike in all voxels along a face.
-    Random random(morton_encode(static_cast<int>(centre[0]), static_cast<int>(centre[1]),
-                                static_cast<int>(centre[2])));
+    // Random samples in equal cubes: regular ones would err alike in all voxels along a face.
+    Random random(
+        morton_encode(static_cast<int>(centre[0]), static_cast<int>(centre[1]), static_cast<int>(centre[2])));
     int inside = 0;
     for (int k = 0; k < n * n * n; ++k) {
       const Vec3 cube(k % n, k / n % n, k / (n * n));

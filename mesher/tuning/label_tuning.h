@@ -81,7 +81,7 @@ struct LabelTuning {
     static constexpr int sweeps = 30;
   };
 
-  /// What bodies take of labels.
+  /// Measuring how much of labels bodies take.
   struct Carving {
     /// Samples along each edge of a voxel that a surface passes: errors of single voxels of up to 1/8 are
     /// independent, so that those of volumes are far below the 1 % that is compared.

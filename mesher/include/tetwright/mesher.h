@@ -127,7 +127,7 @@ struct StripReport {
   Vec3 place = Vec3::Zero();  ///< of one of them, input units
 };
 
-/// What bodies take of the labels that they carve, and of the outside.
+/// The parts that bodies take of the labels that they carve, and of the outside.
 struct CarvedLabels {
   std::map<MaterialOrOutside, double> voxels;  ///< by label; fractions at the surfaces of bodies
   /// Voxel faces between two labels with a side in a body, by pair; the outside or the smaller label first.

@@ -112,20 +112,19 @@ TEST_F(Implants, BodiesLeaveTheVolumeWhole) {
 
 TEST_F(Implants, CallsThatDoNotFit) {
   const std::string labels = volume(), surface = block();
-  for (const auto& [words, message] :
-       {std::pair(surface + " " + labels, "give volumes first"),
-        std::pair(labels + " " + surface + " --layer skin=1", "--layer"),
-        std::pair(labels + " " + surface + " --sheet s=" + surface, "--sheet"),
-        std::pair(labels + " --material label_3=" + surface, "both a label"),
-        std::pair(labels + " --protect-labels 3", "there is no surface"),
-        std::pair(surface + " --protect-labels 3", "no input is a volume"),
-        std::pair(labels + " " + surface + " --voxel-size 3", "two voxels")}) {
+  for (const auto& [words, message] : {std::pair(surface + " " + labels, "give volumes first"),
+                                       std::pair(labels + " " + surface + " --layer skin=1", "--layer"),
+                                       std::pair(labels + " " + surface + " --sheet s=" + surface, "--sheet"),
+                                       std::pair(labels + " --material label_3=" + surface, "both a label"),
+                                       std::pair(labels + " --protect-labels 3", "there is no surface"),
+                                       std::pair(surface + " --protect-labels 3", "no input is a volume"),
+                                       std::pair(labels + " " + surface + " --voxel-size 3", "two voxels")}) {
     const Answer a = mesh(words);
     EXPECT_EQ(a.status, 2) << words;
     EXPECT_NE(a.err.find(message), std::string::npos) << a.err;
   }
-  const Answer bricks = run("prepare " + labels + " " + surface + " --target-tets 1000 --bricks 64 -o " +
-                            (folder_ / "b.vtu"));
+  const Answer bricks =
+      run("prepare " + labels + " " + surface + " --target-tets 1000 --bricks 64 -o " + (folder_ / "b.vtu"));
   EXPECT_EQ(bricks.status, 2);
   EXPECT_NE(bricks.err.find("--bricks"), std::string::npos) << bricks.err;
 }
