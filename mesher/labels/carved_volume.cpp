@@ -61,9 +61,10 @@ class Carving {
         morton_encode(static_cast<int>(centre[0]), static_cast<int>(centre[1]), static_cast<int>(centre[2])));
     int inside = 0;
     for (int k = 0; k < n * n * n; ++k) {
-      const Vec3 cube(k % n, k / n % n, k / (n * n));
-      const Vec3 at(random.uniform(), random.uniform(), random.uniform());
-      inside += is_enclosed(centre + ((cube + at) / n - Vec3::Constant(0.5)));
+      const int x = k % n, y = k / n % n, z = k / (n * n);
+      Vec3 at;  // in this order, which that of arguments is not
+      for (double& along : at) along = random.uniform();
+      inside += is_enclosed(centre + ((Vec3(x, y, z) + at) / n - Vec3::Constant(0.5)));
     }
     return static_cast<double>(inside) / (n * n * n);
   }
