@@ -156,6 +156,7 @@ std::vector<std::vector<Value>> read_whole(const LabelSource& source, std::size_
     const std::size_t n = label_count(low, high);
     if (slices) {
       std::vector<std::span<Value>> parts;
+      parts.reserve(out.size());
       for (std::vector<Value>& values : out)
         parts.push_back(std::span(values).subspan(label_index(grid.size, 0, 0, low[2]), n));
       read(low, high, 0, parts);

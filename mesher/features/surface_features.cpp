@@ -355,7 +355,10 @@ void settle_features(const MesherInput& input, const std::vector<std::vector<Vec
     keep_visible(dense.report.creases, input, dense, features.cell, mesh_junctions(dense.mesh));
   }
   // Labels end at the surfaces of bodies, whose creases stay exact there.
-  if (around == Surroundings::protected_labels || (around == Surroundings::labels && input.bodies.size() > 1))
+  // Beside protected labels only those away from the curves in which bodies end are certain.
+  if (around == Surroundings::protected_labels)
+    keep_visible(dense.report.creases, input, dense, features.cell, mesh_junctions(dense.mesh));
+  else if (around == Surroundings::labels && input.bodies.size() > 1)
     keep_visible(dense.report.creases, input, dense, features.cell, {});
   allow_for_chamfers(features.cell, dense.report);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -133,6 +134,30 @@ RegionGrid padded(const RegionGrid& from, const VoxelIndex& size, const Padding&
   return result;
 }
 
+/// Adds the contacts of the outside with labels at the sides of the volume where voxels are added.
+void add_contacts(const Padding& padding, LabelInput& labels) {
+  std::vector<std::uint8_t> known(labels.materials.size() + 1, 0);
+  const VoxelIndex& size = labels.size;
+  for (std::size_t a = 0; a < 3; ++a)
+    for (const bool upper : {false, true}) {
+      if ((upper ? padding.after[a] : padding.before[a]) == 0) continue;
+      VoxelIndex low{0, 0, 0}, high = size;
+      low[a] = upper ? size[a] - 1 : 0;
+      high[a] = low[a] + 1;
+      for (int z = low[2]; z < high[2]; ++z)
+        for (int y = low[1]; y < high[1]; ++y)
+          for (int x = low[0]; x < high[0]; ++x) {
+            const RegionIndex region = labels.regions.at(x, y, z);
+            if (region == outside_region || known[region]) continue;
+            known[region] = 1;
+            const MaterialTag tag = labels.materials[region - 1u].tag;
+            if (std::none_of(labels.contacts.begin(), labels.contacts.end(),
+                             [&](const LabelContact& c) { return !c.first && c.second == tag; }))
+              labels.contacts.push_back({{}, tag, 0, labels.origin + labels.directions * Vec3(x, y, z)});
+          }
+    }
+}
+
 /// Adds outside voxels to sides of the volume where bodies come close to its border, so that no body is cut
 /// off there.
 void make_room(LabelInput& labels, MesherInput& bodies) {
@@ -158,6 +183,7 @@ void make_room(LabelInput& labels, MesherInput& bodies) {
     throw InputError(labels.file, 0,
                      extents + "; a volume around both would have " + short_number(growth) +
                          " times the voxels: check the units, or cut off what is far outside");
+  add_contacts(padding, labels);
   const std::uint64_t before = labels.voxel_count();
   labels.regions = padded(labels.regions, size, padding);
   labels.size = size;
@@ -173,6 +199,7 @@ void make_room(LabelInput& labels, MesherInput& bodies) {
 
 ImplantedVolume make_implanted_volume(LabelInput labels, MesherInput bodies,
                                       std::vector<MaterialTag> protected_labels) {
+  if (bodies.bodies.empty()) throw UsageError("there is no body for the volume; give at least one");
   if (!bodies.layers.empty()) throw UsageError("--layer is for surfaces alone; leave it out");
   if (bodies.complex && !bodies.complex->sheets.empty())
     throw UsageError(

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <utility>
 
@@ -47,10 +48,7 @@ class Carving {
     const Eigen::Matrix3d edges = frame_.axes.inverse() * labels.directions / frame_.cell_size;
     half_diagonal_ = 0.5 * edges.colwise().norm().sum();
   }
-  bool is_inside(const Vec3& index) const {
-    const NearestRegion there = nearest(index);
-    return is_far(there) ? there.region != outside_region : is_enclosed(index);
-  }
+  bool is_inside(const Vec3& index) const { return nearest(index).region != outside_region; }
   /// The fraction of a voxel that is in bodies.
   double share(const Vec3& centre) const {
     const NearestRegion there = nearest(centre);
@@ -75,7 +73,7 @@ class Carving {
   }
   /// No surface passes the voxel around a point.
   bool is_far(const NearestRegion& there) const {
-    return there.margin > std::min(2 * half_diagonal_, LabelTuning::Carving::far_share * level_set_band);
+    return there.margin > std::min(half_diagonal_, LabelTuning::Carving::far_share * level_set_band);
   }
   bool is_enclosed(const Vec3& index) const {
     const Vec3 at = labels_.origin + labels_.directions * index;

@@ -67,9 +67,10 @@ void InterfaceCells::append_range(const Cell& from, const Cell& to, std::vector<
   const int row = to[0] - from[0] + 1, slice = row * (to[1] - from[1] + 1);
   for_each_in(from, to, [&](int x, int y, int z) {
     const int first = (z - from[2]) * slice + (y - from[1]) * row + x - from[0];
-    for (int k = 0; k < 8; ++k)
-      corners[k] =
-          nearest_[static_cast<std::size_t>(first + (k & 1) + (k >> 1 & 1) * row + (k >> 2) * slice)];
+    for (int k = 0; k < 8; ++k) {
+      const int corner = first + (k & 1) + (k >> 1 & 1) * row + (k >> 2) * slice;
+      corners[k] = nearest_[static_cast<std::size_t>(corner)];
+    }
     if (is_of_one_region(corners, {x, y, z}, {x + 1, y + 1, z + 1})) return;
     if (!have_one_region(corners) || is_mixed_between(corners[0].region, {x, y, z}))
       out.push_back(morton_encode(x, y, z));

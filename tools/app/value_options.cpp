@@ -46,6 +46,7 @@ ModulusLaw parse_modulus(const std::string& text) {
     throw CLI::ValidationError("--modulus",
                                "'" + text + "' is not A,B or A,B,S,T of the law A (S value + T)^B");
   std::vector<double> numbers;
+  numbers.reserve(parts.size());
   for (const std::string& part : parts)
     numbers.push_back(parse_number("--modulus", part, numbers.empty() ? positive : any_number));
   ModulusLaw law;

@@ -211,7 +211,9 @@ DenseMesh mesh_input(ImplantedVolume& volume, PrepareRun& run) {
     const MesherEstimate whole = estimate_mesh(volume, of);
     return Need{whole, static_cast<double>(whole.bytes), {}};
   };
+  // Larger cells than two voxels are impossible beside bodies: then the memory does not suffice.
   if (choose) fit_memory(volume.labels, need, options, run);
+  if (choose) options.voxel_size = std::min(options.voxel_size, 2 * default_cell_size(volume));
   read_sizes(run, box_of(volume.labels));
   DenseMesh dense = mesh_implanted(volume, options, &run.progress);
   report_carving(*dense.report.carved, *run.report.volume);

@@ -78,6 +78,7 @@ ImplantedVolume join_implants(LabelInput labels, MesherInput bodies, PrepareRun&
   std::vector<MaterialTag> kept = protected_tags(labels, run.options.labels);
   const std::size_t known = bodies.findings.size();
   ImplantedVolume volume = make_implanted_volume(std::move(labels), std::move(bodies), std::move(kept));
+  run.report.volume->contacts = volume.labels.contacts;
   const std::vector<Diagnostic>& findings = volume.bodies.findings;
   run.report.diagnostics.insert(run.report.diagnostics.end(),
                                 findings.begin() + static_cast<std::ptrdiff_t>(known), findings.end());

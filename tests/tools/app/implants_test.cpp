@@ -110,6 +110,16 @@ TEST_F(Implants, BodiesLeaveTheVolumeWhole) {
   EXPECT_NEAR(volumes().at("lead"), 3.7 * 3.3 * 21.2, 1e-4 * 3.7 * 3.3 * 21.2);
 }
 
+TEST_F(Implants, LabelsAtABorderThatIsEnlargedTouchTheOutside) {
+  LabelVolume full;
+  full.size = {12, 12, 12};
+  full.labels.assign(12 * 12 * 12, 1);
+  write_label_volume(full, folder_ / "full.nrrd");
+  const std::string file = box("lead.stl", Vec3(4.2, 4.4, 4.1), Vec3(7.9, 7.7, 17.3));
+  const Answer a = mesh(folder_ / "full.nrrd --material lead=" + file);
+  EXPECT_EQ(a.status, 0) << a.err;
+}
+
 TEST_F(Implants, CallsThatDoNotFit) {
   const std::string labels = volume(), surface = block();
   for (const auto& [words, message] : {std::pair(surface + " " + labels, "give volumes first"),
