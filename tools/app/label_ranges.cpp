@@ -63,7 +63,9 @@ std::vector<LabelRange> parse_label_ranges(const std::string& option, const std:
   std::vector<LabelRange> ranges;
   for (const std::string& item : items_of(text)) {
     const std::optional<LabelRange> range = find_range(option, item);
-    if (!range) throw UsageError(option + ": '" + item + "' is neither a label nor a range such as 5-9");
+    if (!range)
+      throw UsageError(std::string(option).append(": '").append(item).append(
+          "' is neither a label nor a range such as 5-9"));
     ranges.push_back(*range);
   }
   return ranges;
