@@ -11,16 +11,17 @@ std::string box_text(const Box3& box) { return place_text(box.low) + " to " + pl
 
 }  // namespace
 
-Box3 box_of(const LabelGrid& grid) {
+Box3 box_of_voxels(const VoxelIndex& size, const Vec3& origin, const Eigen::Matrix3d& directions) {
   Box3 box;
   for (int corner = 0; corner < 8; ++corner) {
     Vec3 index;
-    for (int a = 0; a < 3; ++a)
-      index[a] = (corner >> a & 1) ? grid.size[static_cast<std::size_t>(a)] - 0.5 : -0.5;
-    box.add(grid.to_input(index));
+    for (int a = 0; a < 3; ++a) index[a] = (corner >> a & 1) ? size[static_cast<std::size_t>(a)] - 0.5 : -0.5;
+    box.add(origin + directions * index);
   }
   return box;
 }
+
+Box3 box_of(const LabelGrid& grid) { return box_of_voxels(grid.size, grid.origin, grid.directions); }
 
 InputError boxes_apart(const std::string& file, const std::string& message, const std::string& first,
                        const Box3& first_box, const std::string& second, const Box3& second_box) {

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 
 #include "common/geometry/box_tree.h"
 #include "tetwright/error.h"
-#include "tetwright/label_volume.h"
+#include "tetwright/label_source.h"
 
 namespace tetwright {
 
-/// Box of a volume, with the outer halves of its voxels, input units.
+/// Box of a volume, including the outer halves of its voxels, input units.
+/// \param size voxels along each axis
+/// \param origin centre of the first voxel
+/// \param directions steps from one voxel to the next along each axis, as columns
+Box3 box_of_voxels(const VoxelIndex& size, const Vec3& origin, const Eigen::Matrix3d& directions);
 Box3 box_of(const LabelGrid& grid);
 
 /// The error for a volume and something else whose boxes do not meet.

@@ -8,9 +8,17 @@
 #include <set>
 
 #include "common/features/crease_pieces.h"
+#include "common/geometry/box_tree.h"
 #include "common/parallel/parallel_sort.h"
 
 namespace tetwright {
+
+namespace {
+
+/// Sides of a volume, each of them a patch; the faces between labels have the patch 0.
+constexpr std::size_t border_sides = 6;
+
+}  // namespace
 
 FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<SurfacePatches>& patches,
                                double corner_reach, std::shared_ptr<const MaterialField> field,
@@ -22,6 +30,11 @@ FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<Surfa
       given_up_(std::move(given_up)),
       cells_(std::move(cells)) {
   Items items;
+  if (surroundings_) {  // the patches of labels come first
+    groups_.resize(1 + border_sides);
+    sheet_of_patch_.resize(groups_.size());
+    first_body_patch_ = static_cast<Patch>(groups_.size());
+  }
   for (const MaterialLayer& layer : input.layers) bodies_[layer.tag] = 0;
   for (std::size_t b = 0; b < input.bodies.size(); ++b) bodies_[input.bodies[b].tag] = b;
   if (complex)
@@ -50,6 +63,36 @@ FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<Surfa
     const double length = n.norm();
     normals_.push_back(length > 0 ? Vec3(n / length) : Vec3(Vec3::Zero()));
   }
+  if (surroundings_) find_flat_patches();
+}
+
+void FeatureSurface::find_flat_patches() {
+  struct Plane {
+    Vec3 normal = Vec3::Zero();  // of the largest triangle
+    Vec3 point = Vec3::Zero();
+    double area = 0;
+    Box3 box;
+  };
+  std::vector<Plane> planes(groups_.size());
+  const auto for_each_triangle = [&](const auto& visit) {
+    for (std::size_t i = 0; i < triangles_.items().size(); ++i) {
+      const ProjectionTree::Item& item = triangles_.items()[i];
+      visit(planes[item.kind[0]], item.kind[0], i,
+            std::array{triangles_.corner(item, 0), triangles_.corner(item, 1), triangles_.corner(item, 2)});
+    }
+  };
+  for_each_triangle([&](Plane& plane, std::uint32_t, std::size_t i, const std::array<Vec3, 3>& c) {
+    const double area = (c[1] - c[0]).cross(c[2] - c[0]).norm();
+    if (area > plane.area) plane.area = area, plane.normal = normals_[i], plane.point = c[0];
+    for (const Vec3& p : c) plane.box.add(p);
+  });
+  flat_.resize(planes.size());
+  std::transform(planes.begin(), planes.end(), flat_.begin(), [](const Plane& p) { return p.area > 0; });
+  for_each_triangle([&](const Plane& plane, std::uint32_t patch, std::size_t, const std::array<Vec3, 3>& c) {
+    const double at_most = CutTuning::Labelling::flat_share * (plane.box.high - plane.box.low).norm();
+    for (const Vec3& p : c)
+      if (std::fabs(plane.normal.dot(p - plane.point)) > at_most) flat_[patch] = 0;
+  });
 }
 
 void FeatureSurface::add_triangles(const std::vector<Vec3>& points, const std::vector<Triangle>& triangles,
@@ -168,11 +211,12 @@ void FeatureSurface::add_complex(const ComplexPatches& complex, double corner_re
         std::size_t{regions.first == outside_region ? regions.second : regions.first} - 1,
         std::size_t{regions.second} - 1};
   inner_sheets_ = complex.inner_sheets;
-  first_continued_ = complex.first_continued;
-  sheet_of_patch_ = complex.sheet_of_patch;
-  groups_ = complex.groups;
-  add_triangles(complex.points, complex.triangles, complex.patches, complex.rough, 0, corner_reach, items,
-                complex.touching);
+  const auto first_patch = static_cast<Patch>(groups_.size());
+  first_continued_ = static_cast<Patch>(first_patch + complex.first_continued);
+  sheet_of_patch_.insert(sheet_of_patch_.end(), complex.sheet_of_patch.begin(), complex.sheet_of_patch.end());
+  groups_.insert(groups_.end(), complex.groups.begin(), complex.groups.end());
+  add_triangles(complex.points, complex.triangles, complex.patches, complex.rough, first_patch, corner_reach,
+                items, complex.touching);
   std::vector<ProjectionTree::Item> touching;
   for (const auto& [a, b] : complex.touching) touching.push_back({{a, b, b}, {}});
   touching_edges_ = ProjectionTree(complex.points, std::move(touching));

@@ -75,6 +75,9 @@ class FeatureSurface : public ReferenceSurface {
   bool lacks_creases(const Vec3& point) const override { return given_up_.affects(point); }
   std::optional<Vec3> onto_corner(const Vec3& point, double max_distance) const override;
 
+  std::uint16_t first_body_patch() const override { return first_body_patch_; }
+  bool is_flat(std::uint16_t patch) const override { return patch < flat_.size() && flat_[patch]; }
+
   /// Whether the bodies are in a volume with labels.
   bool is_surrounded() const { return surroundings_ != nullptr; }
   std::optional<double> creased_size() const override { return creased_size_; }
@@ -178,6 +181,8 @@ class FeatureSurface : public ReferenceSurface {
                      const std::vector<std::uint16_t>& patches, const std::vector<std::uint8_t>& rough,
                      Patch first_patch, double corner_reach, Items& items,
                      std::span<const std::array<Index, 2>> without = {});
+  /// Finds the patches that lie in a plane. Needs triangles_ and normals_.
+  void find_flat_patches();
   void add_segment(const SurfaceCreases::Segment& segment, Index first, const PatchPair& patches,
                    Items& items) const;
 
@@ -193,6 +198,8 @@ class FeatureSurface : public ReferenceSurface {
   std::vector<Vec3> normals_;  ///< of the items of triangles_
   std::vector<Corner> corners_;
   std::vector<SurfaceRegion> groups_;  ///< by patch
+  std::vector<std::uint8_t> flat_;     ///< by patch; empty without surroundings
+  Patch first_body_patch_ = 0;
 };
 
 }  // namespace tetwright

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/geometry/box_tree.h"
+#include "common/images/grid_box.h"
 #include "common/message_text.h"
 #include "mesher/complex/labelled_complex.h"
 #include "mesher/tuning/input_tuning.h"
@@ -33,12 +34,7 @@ class VoxelSpace {
 };
 
 Box3 box_of(const LabelInput& labels) {
-  Box3 box;
-  for (int k = 0; k < 8; ++k) {
-    const Vec3 corner((k & 1) * labels.size[0], (k >> 1 & 1) * labels.size[1], (k >> 2) * labels.size[2]);
-    box.add(labels.origin + labels.directions * (corner - Vec3::Constant(0.5)));
-  }
-  return box;
+  return box_of_voxels(labels.size, labels.origin, labels.directions);
 }
 
 std::string box_text(const Box3& box) {

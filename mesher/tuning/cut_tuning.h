@@ -95,6 +95,9 @@ struct CutTuning {
     /// Max distance of a corner where sheets meet from the vertex that represents it, cells: where surfaces
     /// meet at a small angle, the mesh's junction is that far away.
     static constexpr double junction_reach = 3;
+    /// A patch is flat if its points lie in a plane to this share of its diagonal: rounding of single
+    /// precision coordinates in files.
+    static constexpr double flat_share = 1e-5;
     /// Points closer than this to the border of a sheet, cells, are on it.
     static constexpr double border_reach = 0.05;
     /// Creases this close to each other, cells, are parts of one curve: rounding of nearest points.

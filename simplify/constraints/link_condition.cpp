@@ -7,11 +7,24 @@
 
 namespace tetwright {
 
-bool LinkCondition::holds(const EditableMesh& mesh, const SurfaceGrid& grid, const Star& star,
-                          std::size_t b) {
+bool LinkCondition::holds(const EditableMesh& mesh, const SurfaceGrid& grid, const Star& star, std::size_t b,
+                          PatchId first_body_patch) {
+  first_body_patch_ = first_body_patch;
   begin(mesh, grid, star, b);
   read_interfaces_of_a();
-  return walk_star_of_b() && vertices_agree() && interface_edges_agree();
+  return walk_star_of_b() && surfaces_agree() && all_curves_agree() && interface_edges_agree();
+}
+
+bool LinkCondition::all_curves_agree() {
+  if (star_->interface_count[b_] == 0) return true;
+  if (first_body_patch_ == 0)
+    return curves_agree([&](std::size_t p) { return star_->edge_dimension(p) == 1; },
+                        [](const EdgeSheets& e) { return e.on_junction(); });
+  star_->find_curves(first_body_patch_, kinds_);
+  return curves_agree([&](std::size_t p) { return kinds_[p].on_crease(); },
+                      [](const EdgeSheets& e) { return e.kinds.on_crease(); }) &&
+         curves_agree([&](std::size_t p) { return kinds_[p].between_labels(); },
+                      [](const EdgeSheets& e) { return e.kinds.between_labels(); });
 }
 
 void LinkCondition::begin(const EditableMesh& mesh, const SurfaceGrid& grid, const Star& star,
@@ -22,7 +35,7 @@ void LinkCondition::begin(const EditableMesh& mesh, const SurfaceGrid& grid, con
   b_ = b;
   a_id_ = star.centre;
   b_id_ = star.points[b];
-  a_on_boundary_ = b_on_boundary_ = a_on_junction_ = false;
+  a_on_boundary_ = b_on_boundary_ = false;
   common_.assign(star.points.size(), {});
   boundary_at_a_.assign(star.points.size(), 0);
   local_of_a_.clear();
@@ -47,7 +60,6 @@ void LinkCondition::read_interfaces_of_a() {
     c.interface_with_ab = true;
     c.boundary_with_ab |= outside;
   }
-  for (std::size_t p = 0; p < star_->points.size(); ++p) a_on_junction_ |= star_->edge_dimension(p) == 1;
 }
 
 bool LinkCondition::walk_star_of_b() {
@@ -110,14 +122,14 @@ void LinkCondition::read_faces_at_b(Index tet, int slot) {
 void LinkCondition::count_interface(Index point, bool outside, PatchId patch) {
   if (point == a_id_) return;
   if (const std::uint32_t k = local_of_a_.find(point); k != no_index) {
-    common_[k].interfaces.add(patch);
+    common_[k].interfaces.add(patch, first_body_patch_);
     common_[k].boundary += outside;
     return;
   }
   bool added;
   const std::uint32_t k = other_points_.number(point, added);
   if (added) other_interfaces_.push_back({});
-  other_interfaces_[k].add(patch);
+  other_interfaces_[k].add(patch, first_body_patch_);
 }
 
 bool LinkCondition::shares_simplex(const LinkTriangle& triangle) const {
@@ -140,27 +152,33 @@ bool LinkCondition::shares_simplex(const LinkTriangle& triangle) const {
          });
 }
 
-bool LinkCondition::vertices_agree() const {
+bool LinkCondition::surfaces_agree() const {
   const Star& star = *star_;
-  const bool ab_on_junction = star.edge_dimension(b_) == 1;
-  bool b_on_junction = ab_on_junction;
-  for (const EdgeSheets& e : other_interfaces_) b_on_junction |= e.on_junction();
-  for (std::size_t p = 0; p < common_.size(); ++p)
-    b_on_junction |= p != b_ && common_[p].interfaces.on_junction();
-
   // Test ω, and the edges of the links that end in it.
   if (a_on_boundary_ && b_on_boundary_ && boundary_at_a_[b_] == 0) return false;
   const bool ab_on_interface = star.interface_count[b_] != 0;
-  if (ab_on_interface && a_on_junction_ && b_on_junction && !ab_on_junction) return false;
   for (std::size_t p = 0; p < common_.size(); ++p) {
     if (p == b_ || !common_[p].seen) continue;
     const Common& c = common_[p];
     if (!c.with_ab) return false;
     if (boundary_at_a_[p] != 0 && c.boundary != 0 && !c.boundary_with_ab) return false;
-    if (!ab_on_interface) continue;
-    if (star.interface_count[p] != 0 && c.interfaces.count != 0 && !c.interface_with_ab) return false;
-    if (star.edge_dimension(p) == 1 && c.interfaces.on_junction()) return false;
+    if (ab_on_interface && star.interface_count[p] != 0 && c.interfaces.count != 0 && !c.interface_with_ab)
+      return false;
   }
+  return true;
+}
+
+template <class AtA, class AtB>
+bool LinkCondition::curves_agree(const AtA& at_a, const AtB& at_b) const {
+  bool a_on_curve = false, b_on_curve = at_a(b_);
+  for (std::size_t p = 0; p < common_.size(); ++p) {
+    a_on_curve |= at_a(p);
+    if (p != b_) b_on_curve |= at_b(common_[p].interfaces);
+  }
+  for (const EdgeSheets& e : other_interfaces_) b_on_curve |= at_b(e);
+  if (a_on_curve && b_on_curve && !at_a(b_)) return false;
+  for (std::size_t p = 0; p < common_.size(); ++p)
+    if (p != b_ && common_[p].seen && at_a(p) && at_b(common_[p].interfaces)) return false;
   return true;
 }
 

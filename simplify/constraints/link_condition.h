@@ -21,7 +21,11 @@ class LinkCondition {
   /// \param grid has the patches of interface faces.
   /// \param star the star of a.
   /// \param b local number in `star`.
-  bool holds(const EditableMesh& mesh, const SurfaceGrid& grid, const Star& star, std::size_t b);
+  /// \param first_body_patch see ReferenceSurface. If it is not 0, J is divided: creases of bodies keep their
+  ///   topology, and so do the curves between labels, but not the pieces into which one cuts the other, since
+  ///   voxels do not say exactly where they cross
+  bool holds(const EditableMesh& mesh, const SurfaceGrid& grid, const Star& star, std::size_t b,
+             PatchId first_body_patch = 0);
 
  private:
   /// The interface triangles at an edge.
@@ -29,9 +33,11 @@ class LinkCondition {
     std::uint16_t count = 0;
     PatchId patch = 0;    ///< patch of the first triangle
     bool crease = false;  ///< the triangles have different patches
-    void add(PatchId p) {
+    CurveKinds kinds;     ///< only where bodies are among labels
+    void add(PatchId p, PatchId first_body_patch) {
       crease |= count != 0 && p != patch;
       if (count++ == 0) patch = p;
+      if (first_body_patch != 0) kinds.add(p, first_body_patch);
     }
     /// Whether the edge has dimension 1.
     bool on_junction() const { return crease || (count != 0 && count != 2); }
@@ -65,8 +71,14 @@ class LinkCondition {
   void count_interface(Index point, bool outside, PatchId patch);
   /// Whether b's link triangle, or an edge of it, is also in a's link but not in the link of ab.
   bool shares_simplex(const LinkTriangle& triangle) const;
-  /// Lk(a) ∩ Lk(b) = Lk(ab) for the vertices of K, I and J, and for ω.
-  bool vertices_agree() const;
+  /// Lk(a) ∩ Lk(b) = Lk(ab) for the vertices of K and I, and for ω.
+  bool surfaces_agree() const;
+  /// Lk(a) ∩ Lk(b) = Lk(ab) for the vertices of J.
+  bool all_curves_agree();
+  /// As above for J, or for one kind of its curves.
+  /// \param at_a, at_b whether the edge from a to a link point, or from b to another point, is in J
+  template <class AtA, class AtB>
+  bool curves_agree(const AtA& at_a, const AtB& at_b) const;
   /// Lk(a) ∩ Lk(b) = Lk(ab) for the edges of I, and for those of K with ω: the edges opposite a in its
   /// interface triangles.
   bool interface_edges_agree() const;
@@ -77,12 +89,14 @@ class LinkCondition {
   const Star* star_ = nullptr;
   std::size_t b_ = 0;
   Index a_id_ = no_index, b_id_ = no_index;
-  bool a_on_boundary_ = false, b_on_boundary_ = false, a_on_junction_ = false;
+  PatchId first_body_patch_ = 0;
+  bool a_on_boundary_ = false, b_on_boundary_ = false;
   std::vector<Common> common_;                ///< by local number
   std::vector<std::uint16_t> boundary_at_a_;  ///< boundary triangles at the edge from a, by local number
   LocalNumbers local_of_a_;                   ///< local numbers by id
   LocalNumbers tet_numbers_;
   std::vector<Index> walk_;  ///< the tets at b
+  std::vector<CurveKinds> kinds_;  ///< of the edges at a
   /// Interface triangles at edges from b to points outside a's link. They only determine whether b is on a
   /// junction curve.
   LocalNumbers other_points_;

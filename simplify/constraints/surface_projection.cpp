@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/parallel/parallel_sort.h"
+#include "common/tolerances.h"
 #include "simplify/mesh/local_numbers.h"
 #include "simplify/tuning/tuning.h"
 #include "tetwright/resources.h"
@@ -47,6 +48,7 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, std::span<const V
       has_sheets_(
           std::any_of(faces.begin(), faces.end(), [](const InterfaceFace& f) { return f.is_sheet(); })),
       given_patches_(has_patches_ && given),
+      has_labels_(given_patches_ && given->creased_size()),
       given_(given),
       mesh_(&mesh) {
   if (!given_ || has_sheets_) {
@@ -97,7 +99,7 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, std::span<const V
       // A given surface with patches provides its own feature edges, but not those of sheets, nor where it
       // gives up creases.
       const auto is_own = [&] {
-        return !given_patches_ || sheet || lacks_creases((positions[p] + positions[q]) / 2);
+        return !given_patches_ || has_labels_ || sheet || lacks_creases((positions[p] + positions[q]) / 2);
       };
       if ((j - i != 2 || (edges[i].patch != edges[i + 1].patch && is_own())) && complete(p) && complete(q) &&
           (sheet || !given_has_curve(positions[p], positions[q], j - i != 2))) {
@@ -128,6 +130,17 @@ bool SurfaceProjection::given_has_curve(const Vec3& p, const Vec3& q, bool junct
   return given_->onto_crease(space.to_input((p + q) / 2), reach).has_value();
 }
 
+bool SurfaceProjection::is_between_labels(const Vec3& p, const Vec3& q) const {
+  if (!has_labels_) return false;
+  const Vec3 middle = (p + q) / 2;
+  const auto own = curves_.nearest(middle, {}, (q - p).norm());
+  if (!own) return false;
+  const WorkingSpace& space = mesh_->space();
+  // Where both are the same curve, it counts as a crease.
+  const double reach = (*own - middle).norm() + tolerance::flat_patch;
+  return !given_->onto_crease(space.to_input(middle), reach / space.scale());
+}
+
 std::optional<Vec3> SurfaceProjection::onto_surface(const Vec3& p, RegionId first, RegionId second,
                                                     PatchId patch, double max_distance) const {
   if (!given_ || first == second) return surfaces_.nearest(p, kind_of(first, second, patch), max_distance);
@@ -146,6 +159,10 @@ std::optional<Vec3> SurfaceProjection::onto_surface(const Vec3& p, RegionId firs
 
 std::optional<Vec3> SurfaceProjection::onto_curve(const Vec3& p, double max_distance) const {
   return nearer(p, curves_.nearest(p, {}, max_distance), max_distance, &ReferenceSurface::onto_crease);
+}
+
+std::optional<Vec3> SurfaceProjection::onto_crease(const Vec3& p, double max_distance) const {
+  return nearer(p, {}, max_distance, &ReferenceSurface::onto_crease);
 }
 
 std::optional<Vec3> SurfaceProjection::onto_corner(const Vec3& p, double max_distance) const {

@@ -43,6 +43,10 @@ class SurfaceProjection {
   bool lacks_creases(const Vec3& p) const {
     return given_patches_ && given_->lacks_creases(mesh_->space().to_input(p));
   }
+  /// ReferenceSurface::first_body_patch() of the given surface.
+  PatchId first_body_patch() const { return given_patches_ ? given_->first_body_patch() : PatchId{0}; }
+  /// ReferenceSurface::is_flat() of the given surface.
+  bool is_flat(PatchId patch) const { return given_patches_ && given_->is_flat(patch); }
   /// ReferenceSurface::creased_size() of the given surface, working coordinates.
   std::optional<double> creased_size() const {
     const auto size = given_patches_ ? given_->creased_size() : std::nullopt;
@@ -52,8 +56,13 @@ class SurfaceProjection {
   /// `max_distance`.
   std::optional<Vec3> onto_surface(const Vec3& p, RegionId first, RegionId second, PatchId patch,
                                    double max_distance) const;
+  /// Whether an edge of a curve follows one in which labels around the bodies of the given surface meet, with
+  /// each other or with a body's face. Such curves are only as accurate as voxels.
+  bool is_between_labels(const Vec3& p, const Vec3& q) const;
   /// The nearest point of a junction curve within `max_distance`.
   std::optional<Vec3> onto_curve(const Vec3& p, double max_distance) const;
+  /// The nearest point of a crease of the given surface within `max_distance`.
+  std::optional<Vec3> onto_crease(const Vec3& p, double max_distance) const;
   /// The nearest corner, where junction curves end or branch, within `max_distance`.
   std::optional<Vec3> onto_corner(const Vec3& p, double max_distance) const;
 
@@ -67,6 +76,7 @@ class SurfaceProjection {
   ProjectionTree surfaces_, curves_, corners_;
   bool has_patches_ = false, has_sheets_ = false;
   bool given_patches_ = false;  ///< `given_` provides feature edges and corners
+  bool has_labels_ = false;     ///< the bodies of `given_` are among labels
   const ReferenceSurface* given_ = nullptr;
   const EditableMesh* mesh_ = nullptr;
 };

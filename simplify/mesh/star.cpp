@@ -180,6 +180,12 @@ int Star::dimension() const {
   return std::all_of(visited_.begin(), visited_.end(), [](std::uint8_t v) { return v != 0; }) ? 1 : 0;
 }
 
+void Star::find_curves(PatchId first_body_patch, std::vector<CurveKinds>& kinds) const {
+  kinds.assign(points.size(), {});
+  for (const InterfaceTriangle& t : interface_triangles)
+    for (const std::uint16_t p : {t.first, t.second}) kinds[p].add(t.patch, first_body_patch);
+}
+
 void Star::compute_normals() {
   normals.clear();
   for (const StarTet& t : tets) {

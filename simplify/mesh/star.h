@@ -16,6 +16,32 @@ struct VolumeChange {
   double volume;
 };
 
+/// The kinds of curves that an edge belongs to, if bodies are among labels: creases and contacts of bodies,
+/// and curves in which labels meet each other or a body. Found from the interface triangles at the edge.
+class CurveKinds {
+ public:
+  /// \param first_body_patch see ReferenceSurface
+  void add(PatchId patch, PatchId first_body_patch) {
+    Side& side = patch < first_body_patch ? labels_ : bodies_;
+    side.several |= side.count != 0 && side.patch != patch;
+    side.patch = patch;
+    ++side.count;
+  }
+  bool on_crease() const { return bodies_.several; }
+  bool between_labels() const {
+    const unsigned count = labels_.count + bodies_.count;
+    return labels_.several || (count != 0 && count != 2);
+  }
+
+ private:
+  struct Side {
+    PatchId patch = 0;
+    std::uint16_t count = 0;
+    bool several = false;
+  };
+  Side labels_, bodies_;
+};
+
 /// The closed star of a point with its interface triangles: a local copy, for memory locality.
 struct Star {
   /// A tet of the star with its link triangle: (centre, link[0], link[1], link[2]) is positive.
@@ -81,6 +107,8 @@ struct Star {
   }
   /// Dimension of the centre (README.md, Topology), 0 to 3.
   int dimension() const;
+  /// The kinds of curves that the edges from the centre belong to, by link point.
+  void find_curves(PatchId first_body_patch, std::vector<CurveKinds>& kinds) const;
 
   /// For each tet, in their order, (y - x) x (z - x), where x, y, z are its link points: six times its volume
   /// is (x - c) . normals[k] for any centre c. Filled by compute_normals().

@@ -38,6 +38,7 @@ void BlockRules::project_onto(const SurfaceProjection& surfaces, double diagonal
 
 bool near_crease(const BlockRules& rules, const Star& star, std::size_t first, const Vec3& to,
                  std::optional<std::size_t> second) {
+  if (rules.surface.projection->is_between_labels(star.positions[first], star.centre_position)) return true;
   const double asked = *rules.surface.max_feature_distance;
   double bound = asked;
   const auto fits = [&] {

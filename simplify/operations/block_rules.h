@@ -127,6 +127,10 @@ struct BlockRules {
   /// Whether the mesh has patches. If so, points move on their patch and along the feature edges between
   /// patches, and never leave a flat patch.
   bool has_patches() const { return surface.projection && surface.projection->has_patches(); }
+  /// ReferenceSurface::first_body_patch()
+  PatchId first_body_patch() const {
+    return surface.projection ? surface.projection->first_body_patch() : PatchId{0};
+  }
   /// Whether these rules hold for the star's centre: the mesh has patches, or the centre lies on a sheet.
   bool keeps_patches(const Star& star) const {
     return has_patches() || (star.sheets && surface.max_feature_distance);

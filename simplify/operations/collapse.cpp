@@ -168,7 +168,7 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
           rules.error.limit(rules.scale_at(star.centre_position)))
     return Outcome::surface_error;
   if (!(rules.embedded && star.interface_triangles.empty()) &&
-      !ws.link_condition.holds(ws.mesh, ws.grid, star, b))
+      !ws.link_condition.holds(ws.mesh, ws.grid, star, b, rules.first_body_patch()))
     return Outcome::link_condition;
   ws.proposal.edit.clear();
   if (!star.interface_triangles.empty()) {
@@ -191,8 +191,10 @@ double collapse_weight(Star& star, std::size_t b, const BlockRules& rules) {
 
 Outcome collapse_onto(Workspace& ws, const BlockRules& rules, std::size_t b) {
   Star& star = ws.star;
-  const int along = collapsible_edge(vertex_kind(star));
+  const bool crossing = ws.is_crossing(rules);
+  const int along = crossing ? 1 : collapsible_edge(vertex_kind(star));
   if (along == never || star.edge_dimension(b) != along) return Outcome::material_rule;
+  if (crossing && !ws.kinds[b].on_crease()) return Outcome::material_rule;
   star.compute_normals();
   star.compute_gradients();
   if (collapse_weight(star, b, rules) > rules.error.limit()) return Outcome::surface_error;
@@ -201,7 +203,8 @@ Outcome collapse_onto(Workspace& ws, const BlockRules& rules, std::size_t b) {
 
 Outcome collapse(Workspace& ws, const BlockRules& rules) {
   Star& star = ws.star;
-  const int along = collapsible_edge(vertex_kind(star));
+  const bool crossing = ws.is_crossing(rules);
+  const int along = crossing ? 1 : collapsible_edge(vertex_kind(star));
   if (along == never) return Outcome::material_rule;
   star.compute_normals();
   star.compute_gradients();
@@ -211,7 +214,7 @@ Outcome collapse(Workspace& ws, const BlockRules& rules) {
   const double max_error = rules.error.limit(rules.scale_at(star.centre_position));
   Outcome refusal = Outcome::material_rule;
   for (std::size_t p = 0; p < star.points.size(); ++p) {
-    if (star.edge_dimension(p) != along) continue;
+    if (star.edge_dimension(p) != along || (crossing && !ws.kinds[p].on_crease())) continue;
     if (rules.collapse.max_collapsed_edge &&
         (star.positions[p] - star.centre_position).norm() > *rules.collapse.max_collapsed_edge)
       continue;

@@ -30,6 +30,18 @@ Outcome move_fitted(Workspace& ws, const BlockRules& rules, const Vec3& place, f
   return o == Outcome::done ? move_to(ws, rules, to, qualities) : o;
 }
 
+/// Moves the centre into the plane of its patch.
+/// \pre Gradients are computed.
+Outcome fit_to_patch(Workspace& ws, const BlockRules& rules, float floor) {
+  const Star& star = ws.star;
+  const Vec3& c = star.centre_position;
+  const Star::InterfaceTriangle& s = star.interface_triangles.front();
+  const auto on = rules.surface.projection->onto_surface(c, s.inside, s.across, s.patch,
+                                                         Fitting::reach * shortest_edge(star));
+  if (!on || (*on - c).norm() <= tolerance::flat_patch) return Outcome::no_candidate;
+  return move_fitted(ws, rules, *on, floor);
+}
+
 }  // namespace
 
 Outcome fit_to_crease(Workspace& ws, const BlockRules& rules, float floor) {
@@ -39,9 +51,10 @@ Outcome fit_to_crease(Workspace& ws, const BlockRules& rules, float floor) {
   const double reach = Fitting::reach * shortest_edge(star);
   const Vec3& c = star.centre_position;
   if (rules.surface.projection->lacks_creases(c)) return Outcome::no_candidate;
-  const auto on = dimension == 1   ? rules.surface.projection->onto_curve(c, reach)
-                  : dimension == 0 ? rules.surface.projection->onto_corner(c, reach)
-                                   : std::nullopt;
+  const auto on = dimension < 2 && ws.is_on_crease(rules) ? rules.surface.projection->onto_crease(c, reach)
+                  : dimension == 1                        ? rules.surface.projection->onto_curve(c, reach)
+                  : dimension == 0                        ? rules.surface.projection->onto_corner(c, reach)
+                                                          : std::nullopt;
   if (!on) return Outcome::no_candidate;
   const Vec3 to = ws.mesh.snap(*on);
   if ((to - c).norm() <= tolerance::flat_patch) return Outcome::no_candidate;
@@ -55,6 +68,7 @@ Outcome fit_to_samples(Workspace& ws, const BlockRules& rules, float floor, Samp
   if (!samples || star.frozen || star.dimension() != 2) return Outcome::no_candidate;
   star.compute_gradients();
   if (rules.keeps_patches(star) && is_flat(star)) return Outcome::no_candidate;
+  if (is_in_flat_patch(star, rules)) return fit_to_patch(ws, rules, floor);
   SurfaceGrid::Edit& edit = ws.proposal.edit;
   edit.clear();
   const Vec3& c = star.centre_position;

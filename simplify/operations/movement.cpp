@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include "common/tolerances.h"
 
@@ -31,15 +30,16 @@ bool surface_edit(Workspace& ws, const BlockRules& rules, const Vec3& to) {
 }
 
 /// Whether a point where patches meet stays near its feature edge at `to`.
-bool stays_near_crease(const Star& star, const BlockRules& rules, const Vec3& to) {
+bool stays_near_crease(Workspace& ws, const BlockRules& rules, const Vec3& to) {
+  const Star& star = ws.star;
   if (!rules.keeps_curves(star)) return true;
-  std::optional<std::size_t> first;
-  for (std::size_t p = 0; p < star.points.size(); ++p) {
-    if (star.edge_dimension(p) != 1) continue;
-    if (first) return near_crease(rules, star, *first, to, p);
-    first = p;
-  }
-  return true;
+  std::vector<std::size_t>& ends = ws.curve_ends;
+  ends.clear();
+  for (std::size_t p = 0; p < star.points.size(); ++p)
+    if (star.edge_dimension(p) == 1) ends.push_back(p);
+  if (ends.size() == 2) return near_crease(rules, star, ends[0], to, ends[1]);
+  return std::all_of(ends.begin(), ends.end(),
+                     [&](std::size_t p) { return near_crease(rules, star, p, to); });
 }
 
 }  // namespace
@@ -60,6 +60,11 @@ bool is_flat(const Star& star) {
                        };
                        return std::max(off(s.first), off(s.second)) <= tolerance::flat_patch;
                      });
+}
+
+bool is_in_flat_patch(const Star& star, const BlockRules& rules) {
+  return rules.has_patches() && star.dimension() == 2 &&
+         rules.surface.projection->is_flat(star.interface_triangles.front().patch);
 }
 
 Outcome rate(Star& star, const BlockRules& rules, const Vec3& to, float limit, std::vector<float>& qualities,
@@ -84,7 +89,7 @@ Outcome move_to(Workspace& ws, const BlockRules& rules, const Vec3& to, const st
   Proposal& proposal = ws.proposal;
   proposal.edit.clear();
   if (!star.interface_triangles.empty()) {
-    if (!surface_edit(ws, rules, to) || !stays_near_crease(star, rules, to)) return Outcome::surface_error;
+    if (!surface_edit(ws, rules, to) || !stays_near_crease(ws, rules, to)) return Outcome::surface_error;
     if (const Outcome o = ws.test_surface(rules); o != Outcome::done) return o;
   }
   proposal.volumes = star.volume_changes(to - star.centre_position);

@@ -44,7 +44,10 @@ Vec3 keep_volumes(const Star& star, Vec3 step) {
 }
 
 /// Directions in which a point of the given dimension may move without leaving its surface or curve.
-std::array<Vec3, 3> free_directions(const Star& star, int dimension, bool leave_surface, int& count) {
+/// \param follows whether an edge, by link point, belongs to the curve
+template <class Follows>
+std::array<Vec3, 3> free_directions(const Star& star, int dimension, bool leave_surface,
+                                    const Follows& follows, int& count) {
   if (dimension == 3 || leave_surface) {
     count = 3;
     return {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
@@ -60,7 +63,7 @@ std::array<Vec3, 3> free_directions(const Star& star, int dimension, bool leave_
   count = 1;
   Vec3 along = Vec3::Zero();
   for (std::size_t p = 0; p < star.points.size(); ++p)
-    if (star.edge_dimension(p) == 1) along = star.positions[p] - along;
+    if (follows(p)) along = star.positions[p] - along;
   return {along.normalized(), Vec3::Zero(), Vec3::Zero()};
 }
 
@@ -94,7 +97,8 @@ void sort_by_quality(Star& star) {
 /// \pre Gradients are computed.
 bool may_leave(const Star& star, const BlockRules& rules) {
   return rules.surface.leave_surface && rules.surface.projection && !star.creases && !star.sheets &&
-         !(rules.has_patches() && !star.interface_triangles.empty() && is_flat(star));
+         !(rules.has_patches() && !star.interface_triangles.empty() &&
+           (is_flat(star) || is_in_flat_patch(star, rules)));
 }
 
 /// The search for a better position of a star's centre.
@@ -105,11 +109,15 @@ class PlacementSearch {
         star_(ws.star),
         rules_(rules),
         dimension_(dimension),
-        leave_surface_(may_leave(ws.star, rules) && dimension < 3) {}
+        on_crease_(dimension < 2 && ws.is_on_crease(rules)),
+        leave_surface_(may_leave(ws.star, rules) && dimension < 3 && !on_crease_) {}
 
   bool run(float limit, Placement& found) {
     sort_by_quality(star_);
-    directions_ = free_directions(star_, dimension_, leave_surface_, direction_count_);
+    const auto follows = [&](std::size_t p) {
+      return on_crease_ ? ws_.kinds[p].on_crease() : star_.edge_dimension(p) == 1;
+    };
+    directions_ = free_directions(star_, dimension_, leave_surface_, follows, direction_count_);
     shortest_ = shortest_edge(star_);
     if (!choose_bounds()) return false;
     start();
@@ -134,6 +142,7 @@ class PlacementSearch {
   }
 
   std::optional<Vec3> find_nearest(const Vec3& to, double max_distance) const {
+    if (on_crease_) return rules_.surface.projection->onto_crease(to, max_distance);
     const Star::InterfaceTriangle& s = star_.interface_triangles.front();
     return dimension_ == 2
                ? rules_.surface.projection->onto_surface(to, s.inside, s.across, s.patch, max_distance)
@@ -151,7 +160,9 @@ class PlacementSearch {
         const Vec3 normal = star_.surface_normal().normalized();
         offset_ = normal * normal.dot(star_.centre_position - *on);
         // Drop rounding errors, which would accumulate.
-        if (rules_.keeps_patches(star_) && offset_.norm() <= tolerance::flat_patch) offset_.setZero();
+        if ((rules_.keeps_patches(star_) && offset_.norm() <= tolerance::flat_patch) ||
+            is_in_flat_patch(star_, rules_))
+          offset_.setZero();
       }
     max_distance_ = rules_.surface.max_distance.value_or(0);
     // A point of dimension 0 at which no curve ends or branches (two interfaces that touch) has no corner to
@@ -277,6 +288,7 @@ class PlacementSearch {
   Star& star_;
   const BlockRules& rules_;
   int dimension_;
+  bool on_crease_;      ///< of a body among labels
   bool leave_surface_;
   std::array<Vec3, 3> directions_;
   int direction_count_ = 0;
@@ -334,7 +346,7 @@ Outcome optimise(Workspace& ws, const BlockRules& rules) {
   const int dimension = star.dimension();
   if (star.frozen) return Outcome::material_rule;
   star.compute_gradients();
-  if (dimension == 0 && !may_leave(star, rules)) return Outcome::material_rule;
+  if (dimension == 0 && !may_leave(star, rules) && !ws.is_crossing(rules)) return Outcome::material_rule;
   Placement& place = ws.placement;
   if (!find_position(ws, rules, dimension, Smoothing::min_gain * star.worst, place)) return Outcome::quality;
   return move_to(ws, rules, place.position, place.qualities);

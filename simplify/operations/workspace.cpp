@@ -2,6 +2,7 @@
 #include "simplify/operations/workspace.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "simplify/constraints/surface_samples.h"
 #include "simplify/operations/edge_turn.h"
@@ -80,6 +81,17 @@ Outcome Workspace::within_bounds(const BlockRules& rules, std::int64_t count_cha
   proposal.count_change = count_change;
   proposal.count_bounds = rules.count;
   return rules.count.allow(mesh.live_tets(), count_change) ? Outcome::done : Outcome::count;
+}
+
+bool Workspace::is_on_crease(const BlockRules& rules) {
+  if (rules.first_body_patch() == 0 || star.interface_triangles.empty()) return false;
+  star.find_curves(rules.first_body_patch(), kinds);
+  return std::count_if(kinds.begin(), kinds.end(), std::mem_fn(&CurveKinds::on_crease)) == 2;
+}
+
+bool Workspace::is_crossing(const BlockRules& rules) {
+  return !star.frozen && is_on_crease(rules) &&
+         std::count_if(kinds.begin(), kinds.end(), std::mem_fn(&CurveKinds::between_labels)) == 2;
 }
 
 }  // namespace tetwright

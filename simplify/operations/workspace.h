@@ -65,6 +65,8 @@ struct Workspace {
   // Scratch memory of single operations.
   std::vector<float> qualities;                     ///< smoothing and collapse: qualities of the star's tets
   std::vector<CollapseTarget> targets;              ///< collapse
+  std::vector<std::size_t> curve_ends;              ///< movement: ends of the star's edges on curves
+  std::vector<CurveKinds> kinds;                    ///< of the star's edges
   std::array<std::vector<Index>, 2> chains;         ///< edge removal: points around the edge, by region
   std::array<RingTriangulation, 2> triangulations;  ///< edge removal
   std::vector<float> current, trial;                ///< smoothing: values of the star's tets
@@ -96,6 +98,12 @@ struct Workspace {
   ///
   /// \return done, volume, self_intersection, edge_length or count.
   Outcome within_bounds(const BlockRules& rules, std::int64_t count_change);
+  /// Whether the star's centre is on a crease of a body among labels, and neither an end nor a branch of it.
+  /// Fills `kinds`.
+  bool is_on_crease(const BlockRules& rules);
+  /// Whether one curve between labels meets that crease at the star's centre, which may then move along the
+  /// crease: voxels do not say exactly where it is. Fills `kinds`.
+  bool is_crossing(const BlockRules& rules);
 };
 
 }  // namespace tetwright

@@ -42,6 +42,7 @@ class Engine {
 
   EditableMesh& mesh() { return mesh_; }
   const EditableMesh& mesh() const { return mesh_; }
+  const SurfaceGrid& grid() const { return constrained_.grid; }
   BlockRunner& runner() { return runner_; }
   const SurfaceProjection& projection() const { return projection_; }
   const VolumeLedger& ledger() const { return constrained_.ledger; }

@@ -27,10 +27,11 @@ void fit_feature_edges(Engine& engine) {
   BlockRules fitting = engine.rules;
   fitting.error.max.reset();
   fitting.acceptance.good_enough = floor;
-  const std::vector<Index> points = points_off_features(engine.mesh(), engine.projection());
+  const std::vector<Index> points = points_off_features(engine.mesh(), engine.grid(), engine.projection());
   engine.runner().each_star(points, Operation::fit, [&](Workspace& ws) {
     const Outcome moved = fit_to_crease(ws, fitting, floor);
-    if (moved == Outcome::done || moved == Outcome::no_candidate || ws.star.dimension() != 1) return moved;
+    if (moved == Outcome::done || moved == Outcome::no_candidate) return moved;
+    if (ws.star.dimension() != 1 && !ws.is_crossing(fitting)) return moved;
     for (std::size_t b = 0; b < ws.star.points.size(); ++b)
       if (ws.star.edge_dimension(b) == 1 && collapse_onto(ws, fitting, b) == Outcome::done)
         return Outcome::done;

@@ -166,8 +166,10 @@ std::vector<Index> interface_points(const EditableMesh& mesh, const std::functio
   });
 }
 
-std::vector<Index> points_off_features(const EditableMesh& mesh, const SurfaceProjection& projection) {
-  // By point: min and max patch of its boundary faces.
+std::vector<Index> points_off_features(const EditableMesh& mesh, const SurfaceGrid& grid,
+                                       const SurfaceProjection& projection) {
+  const PatchId first_body_patch = projection.first_body_patch();
+  // By point: min and max patch of its boundary faces, or of its faces on bodies among labels.
   constexpr std::uint32_t no_patch = 0xffffffff;
   std::vector<std::uint32_t> smallest(mesh.point_slots(), no_patch), largest(mesh.point_slots(), 0);
   std::vector<std::uint8_t> third(mesh.point_slots(), 0);  // whether the point has a third patch
@@ -176,9 +178,11 @@ std::vector<Index> points_off_features(const EditableMesh& mesh, const SurfacePr
     if (mesh.dead(t)) continue;
     for (int f = 0; f < 4; ++f) {
       const FaceLink link = mesh.link(t, f);
-      if (!link.is_outside()) continue;
-      for (const Index p : face_of(mesh.points(t), f)) {
-        const std::uint32_t patch = link.patch();
+      if (!(first_body_patch == 0 ? link.is_outside() : link.is_interface())) continue;
+      const Triangle face = face_of(mesh.points(t), f);
+      const std::uint32_t patch = link.is_outside() ? link.patch() : grid.patch(mesh, face);
+      if (patch < first_body_patch) continue;
+      for (const Index p : face) {
         const std::uint32_t low = smallest[p], high = largest[p];
         third[p] |= low != no_patch && low != high && patch != low && patch != high;
         smallest[p] = std::min(low, patch);
@@ -193,7 +197,9 @@ std::vector<Index> points_off_features(const EditableMesh& mesh, const SurfacePr
                                      // Nearly all points pass this test.
                                      const Vec3& at = mesh.position(static_cast<Index>(p));
                                      if (!(third[p] ? projection.onto_corner(at, tolerance::flat_patch)
-                                                    : projection.onto_curve(at, tolerance::flat_patch)))
+                                          : first_body_patch != 0
+                                              ? projection.onto_crease(at, tolerance::flat_patch)
+                                              : projection.onto_curve(at, tolerance::flat_patch)))
                                        out.push_back(static_cast<Index>(p));
                                    }
                                  });

@@ -42,7 +42,9 @@ std::vector<Index> points_around(const EditableMesh& mesh, const std::vector<Tet
 std::vector<TetSnapshot> tets_with_faces(const EditableMesh& mesh, const std::vector<Triangle>& faces);
 /// The points of boundary and interfaces of the regions that `wanted` accepts.
 std::vector<Index> interface_points(const EditableMesh& mesh, const std::function<bool(RegionId)>& wanted);
-/// The boundary points at which two patches meet off any feature edge, or three off any corner.
-std::vector<Index> points_off_features(const EditableMesh& mesh, const SurfaceProjection& projection);
+/// The points of the boundary, and of bodies among labels, at which two patches meet off any feature edge, or
+/// three off any corner.
+std::vector<Index> points_off_features(const EditableMesh& mesh, const SurfaceGrid& grid,
+                                       const SurfaceProjection& projection);
 
 }  // namespace tetwright

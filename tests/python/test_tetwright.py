@@ -77,27 +77,6 @@ def test_several_arrays_are_masks():
         tetwright.mesh(masks, on_overlap="error")
 
 
-def test_images():
-    axis = np.arange(20) - 9.5
-    x, y, z = np.meshgrid(axis, axis, axis, indexing="ij")
-    inside = 7 - np.sqrt(x * x + y * y + z * z)  # distance, positive inside
-    mesh = tetwright.mesh(inside, iso={"core": 4, "shell": 0}, voxel_size=0.5)
-    volumes = {m["name"]: m["volume"] for m in mesh.stats["result"]["materials"]}
-    ball = lambda r: 4 / 3 * np.pi * r**3
-    assert abs(volumes["core"] - ball(3)) < 0.1 * ball(3)  # the trilinear image cuts off what is convex
-    assert abs(volumes["shell"] - (ball(7) - ball(3))) < 0.02 * ball(7)
-    assert len(tetwright.mesh(inside, iso="auto").tets) > 0
-    maps = np.stack([1 / (1 + np.exp(-inside - 3)), np.zeros_like(inside)], axis=3)
-    assert len(tetwright.mesh(maps, outside_probability=0.5, smooth=0.5).tets) > 0
-    for probability in (-0.1, 1.5):
-        with pytest.raises(tetwright.UsageError, match=str(probability)):
-            tetwright.mesh(maps, outside_probability=probability)
-    with pytest.raises(tetwright.InputError, match="--iso"):
-        tetwright.mesh(inside)
-    with pytest.raises(tetwright.Error, match="from"):
-        tetwright.mesh(inside, iso=50)
-
-
 def test_labels_give_the_bytes_of_the_program(tmp_path):
     labels = labels_of_two_balls()
     with open(tmp_path / "v.nrrd", "wb") as file:
@@ -346,20 +325,6 @@ def test_arrays_and_files_of_numpy(tmp_path):
         assert np.array_equal(made.points, expected.points) and np.array_equal(made.tets, expected.tets), file
     assert np.array_equal(tetwright.mesh(labels.astype(float), spacing=(1, 2, 3), resolution=12).points,
                           expected.points)
-
-
-def test_arrays_of_fractions_are_images():
-    image = np.zeros((4, 4, 4), np.float64)
-    image[1, 2, 3] = 0.5
-    with pytest.raises(tetwright.InputError, match=r"voxel \(1, 2, 3\) has the value 0.5, not a whole number; .*--iso"):
-        tetwright.mesh(image)
-    image[1, 2, 3] = np.nan
-    with pytest.raises(tetwright.InputError, match=r"voxel \(1, 2, 3\) has the value nan, not a finite number"):
-        tetwright.mesh(image)
-    with pytest.raises(tetwright.InputError, match="2 channels; a volume with one label per voxel is needed"):
-        tetwright.mesh(np.zeros((4, 4, 4, 2), np.float32))
-    with pytest.raises(tetwright.InputError, match="not finite or lie in a plane"):
-        tetwright.mesh(np.full((4, 4, 4), 0.5), affine=np.zeros((4, 4)))
 
 
 def test_what_falls_short_is_a_warning(ball):

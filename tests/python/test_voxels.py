@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Arrays of voxels that are read block by block."""
+"""Arrays of voxels: images, surfaces among labels, and arrays that are read block by block."""
 import importlib.util
 
 import numpy as np
@@ -124,3 +124,56 @@ def test_too_large_arrays_are_refused_before_they_are_read():
     image = Lazy(values())
     with pytest.raises(tetwright.OutputError, match="beside the"):
         tetwright.mesh(labels(), values={"a": image, "b": image}, memory_limit=5e-5)
+
+
+def test_images():
+    axis = np.arange(20) - 9.5
+    x, y, z = np.meshgrid(axis, axis, axis, indexing="ij")
+    inside = 7 - np.sqrt(x * x + y * y + z * z)  # distance, positive inside
+    mesh = tetwright.mesh(inside, iso={"core": 4, "shell": 0}, voxel_size=0.5)
+    volumes = {m["name"]: m["volume"] for m in mesh.stats["result"]["materials"]}
+    ball = lambda r: 4 / 3 * np.pi * r**3
+    assert abs(volumes["core"] - ball(3)) < 0.1 * ball(3)  # the trilinear image cuts off what is convex
+    assert abs(volumes["shell"] - (ball(7) - ball(3))) < 0.02 * ball(7)
+    assert len(tetwright.mesh(inside, iso="auto").tets) > 0
+    maps = np.stack([1 / (1 + np.exp(-inside - 3)), np.zeros_like(inside)], axis=3)
+    assert len(tetwright.mesh(maps, outside_probability=0.5, smooth=0.5).tets) > 0
+    for probability in (-0.1, 1.5):
+        with pytest.raises(tetwright.UsageError, match=str(probability)):
+            tetwright.mesh(maps, outside_probability=probability)
+    with pytest.raises(tetwright.InputError, match="--iso"):
+        tetwright.mesh(inside)
+    with pytest.raises(tetwright.Error, match="from"):
+        tetwright.mesh(inside, iso=50)
+
+
+def test_arrays_of_fractions_are_images():
+    image = np.zeros((4, 4, 4), np.float64)
+    image[1, 2, 3] = 0.5
+    with pytest.raises(tetwright.InputError, match=r"voxel \(1, 2, 3\) has the value 0.5, not a whole number; .*--iso"):
+        tetwright.mesh(image)
+    image[1, 2, 3] = np.nan
+    with pytest.raises(tetwright.InputError, match=r"voxel \(1, 2, 3\) has the value nan, not a finite number"):
+        tetwright.mesh(image)
+    with pytest.raises(tetwright.InputError, match="2 channels; a volume with one label per voxel is needed"):
+        tetwright.mesh(np.zeros((4, 4, 4, 2), np.float32))
+    with pytest.raises(tetwright.InputError, match="not finite or lie in a plane"):
+        tetwright.mesh(np.full((4, 4, 4), 0.5), affine=np.zeros((4, 4)))
+
+
+def test_surfaces_carve_labels():
+    labels = np.zeros((16, 16, 16), np.uint8)
+    labels[2:14, 2:14, 2:8] = 1
+    labels[2:14, 2:14, 8:14] = 2
+    low, high = np.array([5.2, 5.3, 4.9]), np.array([9.1, 9.4, 11.2])
+    points = np.array([np.where([k & 1, k & 2, k & 4], high, low) for k in range(8)])
+    triangles = [(0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6), (0, 1, 5), (0, 5, 4), (2, 6, 7), (2, 7, 3), (0, 4, 6),
+                 (0, 6, 2), (1, 3, 7), (1, 7, 5)]
+    def volumes(**options):
+        mesh = tetwright.mesh(labels, material={"block": (points, np.array(triangles))}, **options)
+        return {m["name"]: m["volume"] for m in mesh.stats["result"]["materials"]}
+    assert abs(volumes()["block"] - np.prod(high - low)) < 1e-3
+    for kept in ([2], [(2, 5)], ["label_2"], 2):
+        assert abs(volumes(protect_labels=kept)["label_2"] - 12 * 12 * 6) < 0.01 * 12 * 12 * 6, kept
+    with pytest.raises(tetwright.UsageError, match="'bone'"):
+        volumes(protect_labels=["bone"])

@@ -7,6 +7,7 @@
 #include <thread>
 #include <utility>
 
+#include "common/images/grid_box.h"
 #include "mesher/mesh_estimate.h"
 #include "tetwright/error.h"
 #include "tetwright/resources.h"
@@ -117,16 +118,6 @@ DenseMesh mesh_input(const MesherInput& surfaces, PrepareRun& run) {
   return mesh_within(surfaces, options, run.report.tolerance, &run.progress);
 }
 
-Box3 box_of(const LabelInput& labels) {
-  Box3 box;
-  for (int k = 0; k < 8; ++k) {
-    const Vec3 corner((k & 1) * labels.size[0], (k >> 1 & 1) * labels.size[1], (k >> 2) * labels.size[2]);
-    // Voxels extend half a spacing beyond their centres.
-    box.add(labels.origin + labels.directions * (corner - Vec3::Constant(0.5)));
-  }
-  return box;
-}
-
 /// How a volume is meshed: whole if it fits, otherwise in the largest bricks that fit.
 Need need_of(const LabelInput& labels, const MesherOptions& options, const PrepareRun& run) {
   const BrickOptions& asked = run.options.bricks;
@@ -169,7 +160,7 @@ DenseMesh mesh_input(LabelInput& labels, PrepareRun& run) {
         {static_cast<double>(need.whole.tets), static_cast<double>(target.tets.value_or(0)),
          static_cast<double>(labels.voxel_count())},
         std::min(thread_count(), std::max(1u, std::thread::hardware_concurrency()))));
-  read_sizes(run, box_of(labels));
+  read_sizes(run, box_of_voxels(labels.size, labels.origin, labels.directions));
   if (target.tolerance && run.task == Task::mesh)
     throw UsageError(
         "--tolerance of 'mesh' is for surfaces; for a volume use 'prepare --tolerance', which bounds the "
@@ -214,7 +205,7 @@ DenseMesh mesh_input(ImplantedVolume& volume, PrepareRun& run) {
   // Larger cells than two voxels are impossible beside bodies: then the memory does not suffice.
   if (choose) fit_memory(volume.labels, need, options, run);
   if (choose) options.voxel_size = std::min(options.voxel_size, 2 * default_cell_size(volume));
-  read_sizes(run, box_of(volume.labels));
+  read_sizes(run, box_of_voxels(volume.labels.size, volume.labels.origin, volume.labels.directions));
   DenseMesh dense = mesh_implanted(volume, options, &run.progress);
   report_carving(*dense.report.carved, *run.report.volume);
   if (target.tolerance) run.report.tolerance = tolerance_of(*target.tolerance, diagonal_of(dense.mesh));

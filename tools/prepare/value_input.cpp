@@ -7,6 +7,7 @@
 #include <utility>
 #include <variant>
 
+#include "common/images/grid_box.h"
 #include "common/message_text.h"
 #include "tetwright/error.h"
 #include "tetwright/io.h"
@@ -202,19 +203,15 @@ Box3 box_of_scan(const ScanInput& input) {
   }
   const auto* implanted = std::get_if<ImplantedVolume>(&input);
   const LabelInput& labels = implanted ? implanted->labels : std::get<LabelInput>(input);
-  for (int corner = 0; corner < 8; ++corner) {
-    Vec3 index;
-    for (int a = 0; a < 3; ++a)
-      index[a] = (corner >> a & 1) ? labels.size[static_cast<std::size_t>(a)] - 0.5 : -0.5;
-    box.add(labels.origin + labels.directions * index);
-  }
-  return box;
+  return box_of_voxels(labels.size, labels.origin, labels.directions);
 }
 
 std::vector<MaterialTag> materials_of_scan(const ScanInput& input) {
   std::vector<MaterialTag> tags;
   if (const auto* labels = std::get_if<LabelInput>(&input))
     for (const auto& material : labels->materials) tags.push_back(material.tag);
+  if (const auto* implanted = std::get_if<ImplantedVolume>(&input))
+    for (const auto& material : implanted->labels.materials) tags.push_back(material.tag);
   return tags;
 }
 

@@ -71,6 +71,11 @@ class ReferenceSurface {
   /// Diagonal of the bounding box, input units, of the smallest body that has creases: how far edges of the
   /// mesh may be from them is a share of it. std::nullopt: that of the mesh.
   virtual std::optional<double> creased_size() const { return {}; }
+  /// Number of the first patch of bodies, if they are among labels: faces between labels have smaller ones.
+  /// Otherwise 0. Curves between labels may cross creases of bodies anywhere.
+  virtual std::uint16_t first_body_patch() const { return 0; }
+  /// Whether a patch, of the interface between any two regions, lies in a plane. Its points then stay in it.
+  virtual bool is_flat(std::uint16_t /*patch*/) const { return false; }
   /// True where creases that bound patches were given up: onto_crease() does not know them, and borders of
   /// patches in the mesh are preserved like its junction curves.
   virtual bool lacks_creases(const Vec3& /*point*/) const { return false; }
