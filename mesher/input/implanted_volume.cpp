@@ -33,9 +33,7 @@ class VoxelSpace {
   Eigen::Matrix3d to_index_;
 };
 
-Box3 box_of(const LabelInput& labels) {
-  return box_of_voxels(labels.size, labels.origin, labels.directions);
-}
+Box3 box_of(const LabelInput& labels) { return box_of_voxels(labels.size, labels.origin, labels.directions); }
 
 std::string box_text(const Box3& box) {
   return "from " + place_text(box.low) + " to " + place_text(box.high);

@@ -95,7 +95,7 @@ class LinkCondition {
   std::vector<std::uint16_t> boundary_at_a_;  ///< boundary triangles at the edge from a, by local number
   LocalNumbers local_of_a_;                   ///< local numbers by id
   LocalNumbers tet_numbers_;
-  std::vector<Index> walk_;  ///< the tets at b
+  std::vector<Index> walk_;        ///< the tets at b
   std::vector<CurveKinds> kinds_;  ///< of the edges at a
   /// Interface triangles at edges from b to points outside a's link. They only determine whether b is on a
   /// junction curve.

@@ -138,19 +138,39 @@ void Star::add_interface_triangle(Index first, Index second, RegionId inside, Re
 }
 
 int Star::dimension() const {
-  if (interface_triangles.empty()) return 3;
+  return dimension_of([](const InterfaceTriangle&) { return true; },
+                      [&](std::size_t p) { return edge_dimension(p) == 1; });
+}
+
+int Star::dimension_among_labels(const std::vector<CurveKinds>& kinds) const {
+  return dimension_of([](const InterfaceTriangle&) { return true; },
+                      [&](std::size_t p) { return kinds[p].between_labels(); });
+}
+
+int Star::dimension_on_bodies(PatchId first_body_patch, const std::vector<CurveKinds>& kinds) const {
+  return dimension_of([&](const InterfaceTriangle& t) { return t.patch >= first_body_patch; },
+                      [&](std::size_t p) { return kinds[p].on_crease(); });
+}
+
+template <class Counts, class IsCurve>
+int Star::dimension_of(const Counts& counts, const IsCurve& is_curve) const {
   // The interface triangles at the centre are the edges of a graph on the link points. An edge of dimension 2
   // from the centre is a node at which two of them continue. Walk from interface triangle to interface
   // triangle across such nodes.
+  visited_.assign(interface_triangles.size(), 0);
+  for (std::size_t k = 0; k < interface_triangles.size(); ++k) visited_[k] = !counts(interface_triangles[k]);
+  const auto all_visited = [&] {
+    return std::all_of(visited_.begin(), visited_.end(), [](std::uint8_t v) { return v != 0; });
+  };
+  if (all_visited()) return 3;
   std::size_t ends[2] = {0, 0};
   std::size_t end_count = 0;
   for (std::size_t p = 0; p < points.size(); ++p)
-    if (edge_dimension(p) == 1) {
+    if (is_curve(p)) {
       if (end_count == 2) return 0;
       ends[end_count++] = p;
     }
   if (end_count == 1) return 0;
-  visited_.assign(interface_triangles.size(), 0);
   const auto walk = [&](std::size_t interface_triangle, std::size_t from) {
     // Follow the interface triangles to the end of their curve, or back to the start.
     std::size_t at = from;
@@ -159,7 +179,7 @@ int Star::dimension() const {
       at = interface_triangles[interface_triangle].first == at
                ? interface_triangles[interface_triangle].second
                : interface_triangles[interface_triangle].first;
-      if (at == from || edge_dimension(at) != 2) return at;
+      if (at == from || is_curve(at)) return at;
       std::size_t next = interface_triangles.size();
       for (std::size_t k = 0; k < interface_triangles.size(); ++k)
         if (!visited_[k] && (interface_triangles[k].first == at || interface_triangles[k].second == at))
@@ -169,15 +189,17 @@ int Star::dimension() const {
     }
   };
   if (end_count == 0) {
-    walk(0, interface_triangles[0].first);
-    return std::all_of(visited_.begin(), visited_.end(), [](std::uint8_t v) { return v != 0; }) ? 2 : 0;
+    const auto first =
+        static_cast<std::size_t>(std::find(visited_.begin(), visited_.end(), 0) - visited_.begin());
+    walk(first, interface_triangles[first].first);
+    return all_visited() ? 2 : 0;
   }
   for (std::size_t k = 0; k < interface_triangles.size(); ++k) {
     if (visited_[k] || (interface_triangles[k].first != ends[0] && interface_triangles[k].second != ends[0]))
       continue;
     if (walk(k, ends[0]) != ends[1]) return 0;
   }
-  return std::all_of(visited_.begin(), visited_.end(), [](std::uint8_t v) { return v != 0; }) ? 1 : 0;
+  return all_visited() ? 1 : 0;
 }
 
 void Star::find_curves(PatchId first_body_patch, std::vector<CurveKinds>& kinds) const {

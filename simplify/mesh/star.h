@@ -27,7 +27,7 @@ class CurveKinds {
     side.patch = patch;
     ++side.count;
   }
-  bool on_crease() const { return bodies_.several; }
+  bool on_crease() const { return bodies_.several || (bodies_.count != 0 && bodies_.count != 2); }
   bool between_labels() const {
     const unsigned count = labels_.count + bodies_.count;
     return labels_.several || (count != 0 && count != 2);
@@ -109,6 +109,11 @@ struct Star {
   int dimension() const;
   /// The kinds of curves that the edges from the centre belong to, by link point.
   void find_curves(PatchId first_body_patch, std::vector<CurveKinds>& kinds) const;
+  /// Dimension of the centre if patches of bodies do not count.
+  /// \param kinds by find_curves()
+  int dimension_among_labels(const std::vector<CurveKinds>& kinds) const;
+  /// Dimension of the centre if only the faces of bodies count, 0 to 3.
+  int dimension_on_bodies(PatchId first_body_patch, const std::vector<CurveKinds>& kinds) const;
 
   /// For each tet, in their order, (y - x) x (z - x), where x, y, z are its link points: six times its volume
   /// is (x - c) . normals[k] for any centre c. Filled by compute_normals().
@@ -140,6 +145,10 @@ struct Star {
   double surface_error(const Vec3& step, double gamma, bool losses_cancel);
 
  private:
+  /// Dimension of the centre in the complex of the interface triangles that count.
+  /// \param is_curve whether the edge to a link point has dimension 1 in it
+  template <class Counts, class IsCurve>
+  int dimension_of(const Counts& counts, const IsCurve& is_curve) const;
   /// Sum of the areas of the interface triangles, oriented consistently: the triangles of a sheet have no
   /// side.
   Vec3 oriented_area();

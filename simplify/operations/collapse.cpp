@@ -123,7 +123,8 @@ void propose(Workspace& ws, std::size_t b) {
 }
 
 /// Runs all tests but the weight for the target with local number b.
-Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
+/// \param crossing Workspace::is_crossing()
+Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b, bool crossing) {
   Star& star = ws.star;
   std::vector<float>& qualities = ws.qualities;
   const Vec3& to = star.positions[b];
@@ -168,7 +169,8 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b) {
           rules.error.limit(rules.scale_at(star.centre_position)))
     return Outcome::surface_error;
   if (!(rules.embedded && star.interface_triangles.empty()) &&
-      !ws.link_condition.holds(ws.mesh, ws.grid, star, b, rules.first_body_patch()))
+      !(ws.link_condition.holds(ws.mesh, ws.grid, star, b, rules.first_body_patch()) &&
+        (!crossing || ws.may_cross_at(b))))
     return Outcome::link_condition;
   ws.proposal.edit.clear();
   if (!star.interface_triangles.empty()) {
@@ -198,7 +200,7 @@ Outcome collapse_onto(Workspace& ws, const BlockRules& rules, std::size_t b) {
   star.compute_normals();
   star.compute_gradients();
   if (collapse_weight(star, b, rules) > rules.error.limit()) return Outcome::surface_error;
-  return try_target(ws, rules, b);
+  return try_target(ws, rules, b, crossing);
 }
 
 Outcome collapse(Workspace& ws, const BlockRules& rules) {
@@ -234,7 +236,7 @@ Outcome collapse(Workspace& ws, const BlockRules& rules) {
                       return x.weight != y.weight ? x.weight < y.weight : x.point < y.point;
                     });
   for (std::size_t i = 0; i < count; ++i) {
-    const Outcome o = try_target(ws, rules, targets[i].point);
+    const Outcome o = try_target(ws, rules, targets[i].point, crossing);
     if (o == Outcome::done) return o;
     if (depth(o) > depth(refusal)) refusal = o;
   }

@@ -15,8 +15,8 @@ double shortest_edge(const Star& star);
 /// Whether all interface triangles at the centre are in one plane.
 /// \pre Gradients are computed.
 bool is_flat(const Star& star);
-/// Whether the centre lies within a patch that is flat in the given surface, even if its neighbours do not all
-/// lie in that plane.
+/// Whether the centre lies within a patch that is flat in the given surface, even if its neighbours do not
+/// all lie in that plane.
 bool is_in_flat_patch(const Star& star, const BlockRules& rules);
 
 /// Rates a move of the centre to `to` by Error(op) and quality.

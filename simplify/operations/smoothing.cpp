@@ -288,7 +288,7 @@ class PlacementSearch {
   Star& star_;
   const BlockRules& rules_;
   int dimension_;
-  bool on_crease_;      ///< of a body among labels
+  bool on_crease_;  ///< of a body among labels
   bool leave_surface_;
   std::array<Vec3, 3> directions_;
   int direction_count_ = 0;

@@ -2,7 +2,6 @@
 #include "simplify/operations/workspace.h"
 
 #include <algorithm>
-#include <functional>
 
 #include "simplify/constraints/surface_samples.h"
 #include "simplify/operations/edge_turn.h"
@@ -86,12 +85,17 @@ Outcome Workspace::within_bounds(const BlockRules& rules, std::int64_t count_cha
 bool Workspace::is_on_crease(const BlockRules& rules) {
   if (rules.first_body_patch() == 0 || star.interface_triangles.empty()) return false;
   star.find_curves(rules.first_body_patch(), kinds);
-  return std::count_if(kinds.begin(), kinds.end(), std::mem_fn(&CurveKinds::on_crease)) == 2;
+  return star.dimension_on_bodies(rules.first_body_patch(), kinds) == 1;
 }
 
 bool Workspace::is_crossing(const BlockRules& rules) {
-  return !star.frozen && is_on_crease(rules) &&
-         std::count_if(kinds.begin(), kinds.end(), std::mem_fn(&CurveKinds::between_labels)) == 2;
+  return !star.frozen && is_on_crease(rules) && star.dimension_among_labels(kinds) == 1;
+}
+
+bool Workspace::may_cross_at(std::size_t b) {
+  if (kinds[b].between_labels()) return true;
+  // Without the patches of interface faces.
+  return target_star.gather(mesh, star.points[b]) == Outcome::done && target_star.dimension() == 2;
 }
 
 }  // namespace tetwright

@@ -57,7 +57,7 @@ struct Workspace {
   OperationCounts counts;
 
   // Gathered parts of the mesh.
-  Star star;
+  Star star, target_star;
   EdgeRing ring;
   StarWalk walk;
   LinkCondition link_condition;
@@ -104,6 +104,10 @@ struct Workspace {
   /// Whether one curve between labels meets that crease at the star's centre, which may then move along the
   /// crease: voxels do not say exactly where it is. Fills `kinds`.
   bool is_crossing(const BlockRules& rules);
+  /// Whether the crossing at the star's centre may move to link point b on its crease: if curves between
+  /// labels do not lead there, b must lie within a single interface of them.
+  /// \pre is_crossing()
+  bool may_cross_at(std::size_t b);
 };
 
 }  // namespace tetwright

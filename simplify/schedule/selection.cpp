@@ -190,19 +190,18 @@ std::vector<Index> points_off_features(const EditableMesh& mesh, const SurfaceGr
       }
     }
   }
-  return parallel_collect<Index>(0, smallest.size(), Grains::slots,
-                                 [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
-                                   for (std::size_t p = begin; p < end; ++p) {
-                                     if (smallest[p] == no_patch || smallest[p] == largest[p]) continue;
-                                     // Nearly all points pass this test.
-                                     const Vec3& at = mesh.position(static_cast<Index>(p));
-                                     if (!(third[p] ? projection.onto_corner(at, tolerance::flat_patch)
-                                          : first_body_patch != 0
-                                              ? projection.onto_crease(at, tolerance::flat_patch)
-                                              : projection.onto_curve(at, tolerance::flat_patch)))
-                                       out.push_back(static_cast<Index>(p));
-                                   }
-                                 });
+  return parallel_collect<Index>(
+      0, smallest.size(), Grains::slots, [&](std::size_t begin, std::size_t end, std::vector<Index>& out) {
+        for (std::size_t p = begin; p < end; ++p) {
+          if (smallest[p] == no_patch || smallest[p] == largest[p]) continue;
+          // Nearly all points pass this test.
+          const Vec3& at = mesh.position(static_cast<Index>(p));
+          if (!(third[p]                ? projection.onto_corner(at, tolerance::flat_patch)
+                : first_body_patch != 0 ? projection.onto_crease(at, tolerance::flat_patch)
+                                        : projection.onto_curve(at, tolerance::flat_patch)))
+            out.push_back(static_cast<Index>(p));
+        }
+      });
 }
 
 std::vector<TetSnapshot> tets_with_faces(const EditableMesh& mesh, const std::vector<Triangle>& faces) {

@@ -34,7 +34,7 @@ Target chosen;
 
 // If the values of an inner node cannot be decompressed, OpenVDB throws and loses that child of the root
 // (RootNode::readTopology()). Only a damaged file does that, and the program ends with it.
-extern "C" const char* __lsan_default_suppressions();  // NOLINT(bugprone-reserved-identifier)
+extern "C" const char* __lsan_default_suppressions();   // NOLINT(bugprone-reserved-identifier)
 extern "C" const char* __lsan_default_suppressions() {  // NOLINT(bugprone-reserved-identifier)
   return "leak:libopenvdb\n";
 }

@@ -73,6 +73,41 @@ TEST_F(Implants, AreSimplified) {
   EXPECT_EQ(run("check " + (folder_ / "p.msh")).status, 0);
 }
 
+// The edges of a box pass an interface of labels at a small angle, and its corners are just beyond it.
+TEST_F(Implants, EdgesThatHardlyCrossAnInterface) {
+  LabelVolume ball;
+  ball.size = {20, 20, 20};
+  ball.space = "right-anterior-superior";
+  for (int z = 0; z < 20; ++z)
+    for (int y = 0; y < 20; ++y)
+      for (int x = 0; x < 20; ++x) {
+        const double r = (Vec3(x, y, z) - Vec3::Constant(9.5)).norm();
+        ball.labels.push_back(r < 4.5 ? 2 : r < 8.3 ? 1 : 0);
+      }
+  write_label_volume(ball, folder_ / "ball.nrrd");
+  const Vec3 low(6.5, 7.2, 7.2), high(9.5, 11.8, 11.8);
+  for (const int tets : {1500, 5000}) {
+    const Answer a = run("prepare " + (folder_ / "ball.nrrd") + " --material box=" + box("b.stl", low, high) +
+                         " --surface-space RAS --target-tets " + std::to_string(tets) + " -o " +
+                         (folder_ / "p.vtu") + " --stats " + (folder_ / "s.json"));
+    EXPECT_EQ(a.status, 0) << a.err;
+    const nlohmann::json result = stats().at("result");
+    EXPECT_LT(result.at("percent_below_threshold"), 4) << tets;
+    const TetMesh mesh = read_tet_mesh(folder_ / "p.vtu").mesh;
+    double off = 0;
+    for (const InterfaceTriangle& t : find_interfaces(mesh)) {
+      if (mesh.material_names.at(t.material) != "box" &&
+          !(t.other && mesh.material_names.at(*t.other) == "box"))
+        continue;
+      for (const Index p : t.ids) {
+        const Vec3 beyond = (low - mesh.points[p]).cwiseMax(mesh.points[p] - high);
+        off = std::max(off, std::fabs(beyond.maxCoeff()));
+      }
+    }
+    EXPECT_LT(off, 0.01) << tets;
+  }
+}
+
 TEST_F(Implants, ProtectedLabelsStay) {
   const std::string words = volume() + " --material implant=" + block() + " --surface-space RAS ";
   for (const char* list : {"--protect-labels 7", "--protect-labels 5-9", "--protect-labels label_7"}) {
