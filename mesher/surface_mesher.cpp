@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -19,6 +20,7 @@
 #include "mesher/features/surface_features.h"
 #include "mesher/field_mesher.h"
 #include "mesher/input/expected_solids.h"
+#include "mesher/labels/border_sides.h"
 #include "mesher/labels/carved_field.h"
 #include "mesher/labels/carved_volume.h"
 #include "mesher/level_sets/field_solid.h"
@@ -236,6 +238,18 @@ void validate_carved_labels_left(const ImplantedVolume& volume, const std::vecto
                            "--voxel-size");
 }
 
+/// Throws an error that names a body of which protected labels leave nothing.
+void validate_unprotected_left(const ImplantedVolume& volume, const std::vector<BodyInLabels>& in_labels,
+                               const std::vector<std::uint8_t>& there) {
+  for (std::size_t b = 0; b < there.size(); ++b)
+    if (!there[b] && 2 * in_labels[b].in_protected > in_labels[b].in_volume)
+      throw InputError(volume.bodies.bodies[b].file, 0,
+                       "nothing is left of '" + volume.bodies.bodies[b].name +
+                           "', since it gives way to the labels of --protect-labels, and " +
+                           short_number(100 * in_labels[b].in_protected / in_labels[b].in_volume) +
+                           " % of it is inside them; leave them out there, or check its position");
+}
+
 /// The stages of mesh_surfaces() and mesh_implanted(), in this order.
 class SurfaceMeshing {
  public:
@@ -260,7 +274,8 @@ class SurfaceMeshing {
     report_.sheets = expected_sheets(input_);
     expect_materials(input_, *bodies_.field, interface_voxels_, thin_.finer.refinement > 0, report_);
     if (volume_) carve_volume();
-    const CreaseCurves border = std::exchange(report_.creases, {});
+    CreaseCurves border = std::exchange(report_.creases, {});
+    if (volume_) border = creases_off_bodies(border);
     FieldMesh made = mesh_field(field_, std::move(interface_voxels_), std::move(thin_.finer), options_,
                                 volume_ ? label_memory(volume_->labels, report_.cell_size) : MemoryModel{},
                                 std::move(report_), stages_,
@@ -322,10 +337,11 @@ class SurfaceMeshing {
                        short_number(max_cell) + ", are possible");
     if (options_.keep_outside) validate_outside_is_free(input_);
     validate_estimate(estimate_mesh(*volume_, options_));
-    VolumeField made = make_volume_field(labels, options_, report_, stages_.progress());
+    VolumeField made = make_volume_field(labels, options_, report_, stages_.progress(), &input_);
     labels_ = std::move(made.field);
     label_cells_ = std::move(made.finer);
     voxels_ = labels_->voxels();
+    crossed_ = crossed_sides(*volume_, voxels_);
     const MesherEstimate bodies = estimate_of_bodies(*volume_, options_);
     report_.estimate.tets += bodies.tets;
     report_.estimate.bytes += bodies.bytes;
@@ -334,12 +350,50 @@ class SurfaceMeshing {
 
   /// Combines bodies with the volume around them.
   void carve_volume() {
-    field_ = CarvedField::make(labels_, bodies_.field, protected_regions(*volume_), layer_around_bodies());
-    report_.carved = measure_carving(*volume_, *bodies_.field, stages_.progress());
+    field_ = CarvedField::make(labels_, bodies_.field, protected_regions(*volume_), layer_around_bodies(),
+                               crossed_);
+    Carving carving = measure_carving(*volume_, *bodies_.field, stages_.progress());
+    report_.carved = std::move(carving.labels);
+    in_labels_ = std::move(carving.bodies);
     interface_voxels_ = field_->interface_voxels();
     thin_.finer = combine(std::move(thin_.finer), std::move(label_cells_));
-    // The part of a body that protected labels leave is not known from its surface.
-    if (!volume_->protected_labels.empty()) report_.expected.clear();
+    for (std::size_t b = 0; b < in_labels_.size(); ++b) {
+      const MesherInput::Body& body = input_.bodies[b];
+      if (in_labels_[b].in_labels == 0) report_.off_labels.push_back(body.name);
+      // The part of a body that protected labels leave is not known from its surface.
+      if (in_labels_[b].beside_protected == 0) continue;
+      std::erase_if(report_.expected, [&](const ExpectedSolid& s) { return s.tag == body.tag; });
+      std::erase(report_.unknown, body.name);
+      report_.at_protected.push_back(body.name);
+    }
+  }
+  /// The parts of creases that are away from bodies.
+  CreaseCurves creases_off_bodies(const CreaseCurves& creases) const {
+    const std::unique_ptr<FieldSampler> sampler = bodies_.field->sampler();
+    const double voxel = voxel_size(volume_->labels), reach = voxel / voxels_.cell_size;
+    const auto is_free = [&](const Vec3& p) {
+      const NearestRegion body = sampler->nearest(voxels_.to_grid(p));
+      return body.region == outside_region && body.margin > std::min(reach, 0.9 * bodies_.field->band());
+    };
+    CreaseCurves kept;
+    for (const auto& [a, b] : creases.segments) {
+      const Vec3 &from = creases.points[a], &to = creases.points[b];
+      const int count = std::max(1, static_cast<int>(std::ceil((to - from).norm() / voxel)));
+      const auto at = [&](int i) -> Vec3 { return from + (to - from) * i / count; };
+      for (int i = 0, k; i < count; i = k) {
+        for (k = i; k < count && is_free(at(k)) && is_free(at(k + 1));) ++k;
+        if (k == i) {
+          ++k;
+          continue;
+        }
+        const auto first = static_cast<Index>(kept.points.size());
+        kept.points.push_back(at(i));
+        kept.points.push_back(k == count ? to : at(k));
+        kept.segments.push_back({first, first + 1});
+      }
+    }
+    std::copy_if(creases.corners.begin(), creases.corners.end(), std::back_inserter(kept.corners), is_free);
+    return kept;
   }
   /// The layer in which interfaces of labels turn towards bodies, voxels of the frame.
   double layer_around_bodies() const {
@@ -357,6 +411,7 @@ class SurfaceMeshing {
     if (!volume_) return validate_materials_left(input_, *bodies_.field, there);
     const auto labels = static_cast<std::ptrdiff_t>(volume_->labels.materials.size()) + 1;
     validate_carved_labels_left(*volume_, {there.begin(), there.begin() + labels});
+    validate_unprotected_left(*volume_, in_labels_, {there.begin() + labels, there.end()});
     std::vector<std::uint8_t> of_bodies(there.begin() + labels - 1, there.end());
     of_bodies[outside_region] = there[outside_region];
     validate_materials_left(input_, *bodies_.field, of_bodies);
@@ -378,9 +433,19 @@ class SurfaceMeshing {
                                            budget_.base_tets),
                        asked});
     stages_.throw_if_stopped();
-    bodies_ = build_field(input_, voxels_, options_.keep_outside, {options_.min_gap, options_.min_thickness},
-                          budget_, std::move(cells), stages_.progress());
+    bodies_ = build_field(with_continued_faces(), voxels_, options_.keep_outside,
+                          {options_.min_gap, options_.min_thickness}, budget_, std::move(cells),
+                          stages_.progress());
     field_ = bodies_.field;
+  }
+
+  /// The bodies as distances are measured from them.
+  MesherInput with_continued_faces() const {
+    MesherInput input = input_;
+    if (volume_)
+      for (MesherInput::Body& body : input.bodies)
+        body.surface = continued_beyond(*volume_, voxels_, crossed_, std::move(body.surface));
+    return input;
   }
 
   /// Sheets and parts that are thin for the cells: smaller cells where these help, else a report.
@@ -419,7 +484,7 @@ class SurfaceMeshing {
   void fit_features(DenseMesh& dense, SheetParts* parts) {
     stages_.begin("creases");
     const double cell = features_.cell;
-    const auto features = std::make_shared<const FeatureSurface>(
+    const auto features = std::make_shared<FeatureSurface>(
         input_, features_.bodies, CellTuning::Patches::corner_reach * cell, dense.field,
         features_.complex ? &*features_.complex : nullptr, bodies_.caps, features_.given_up, features_.cells,
         volume_ ? dense.reference : nullptr);
@@ -435,6 +500,7 @@ class SurfaceMeshing {
     fit_creases(dense.mesh, *features, *field_, cell);
     beside.restore(dense.mesh, *features);
     measure_walls(dense, *field_);
+    if (volume_) settle_border(dense, *features);
     // Faces across a closed gap are no part of the region on either side of it.
     for (const InterfaceTriangle& t : dense.mesh.interfaces)
       if (const SurfaceRegion group = features->group_of(t.patch);
@@ -443,6 +509,21 @@ class SurfaceMeshing {
     dense.reference = features;
     dense.report.seconds_cut += stages_.seconds();
     dense.report.loops_cut += stages_.loops();
+  }
+
+  /// Replaces what was known of the border of a volume before points moved.
+  void settle_border(DenseMesh& dense, FeatureSurface& features) const {
+    // Faces of bodies in the border have other patches now.
+    std::erase_if(dense.mesh.patch_groups, [&](const auto& group) {
+      const auto& [pair, patch] = group.first;
+      return !features.is_beside_bodies({{}, pair.first, pair.second, patch});
+    });
+    TetMesh beside;
+    beside.points = dense.mesh.points;
+    std::copy_if(dense.mesh.interfaces.begin(), dense.mesh.interfaces.end(),
+                 std::back_inserter(beside.interfaces),
+                 [&](const InterfaceTriangle& t) { return features.is_beside_bodies(t); });
+    features.set_surroundings(reference_of(beside, dense.field));
   }
 
   std::size_t filling_tets(const MesherReport& report) const {
@@ -461,6 +542,8 @@ class SurfaceMeshing {
   BodySizes body_cells_;                      ///< that are halved because bodies in it are thin
   RefinementRegions label_cells_;             ///< that are halved because its labels are thin
   GridFrame voxels_;
+  std::vector<BodyInLabels> in_labels_;  ///< by body
+  unsigned crossed_ = 0;                 ///< sides of the volume, see crossed_sides()
   RefinementBudget budget_;
   SurfaceFeatures features_;
   BodyField bodies_;

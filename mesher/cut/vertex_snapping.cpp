@@ -165,7 +165,7 @@ class Mover {
     if (lattice_.is_on[p] || is_certain(p)) return std::nullopt;
     const std::optional<RegionSet> regions = pure_regions(lattice_, p);
     if (!regions) return std::nullopt;
-    const unsigned faces = lattice_.box_faces(p);
+    const unsigned planes = lattice_.held_planes(p);
     double nearest = 0;
     Index other = no_index;
     bool too_near = false;
@@ -176,7 +176,7 @@ class Mover {
         const double share = lattice_.cut_share(p, own, q, r);
         too_near |= share <= (lattice_.is_centre[p] == lattice_.is_centre[q] ? Snapping::near_long
                                                                              : Snapping::near_short);
-        if ((lattice_.box_faces(q) & faces) != faces) continue;  // out of reach
+        if ((lattice_.held_planes(q) & planes) != planes) continue;  // out of reach
         const double length = share * (lattice_.positions[q] - lattice_.positions[p]).norm();
         if (other == no_index || length < nearest || (length == nearest && q < other)) {
           nearest = length;
@@ -200,12 +200,12 @@ class Mover {
   }
 
   /// The axes along which a point must not move, one bit each: points stay on the faces, edges and corners of
-  /// the box.
+  /// the box, and on the planes of the border of a volume.
   unsigned held_axes(Index p) const {
-    const unsigned faces = lattice_.box_faces(p);
+    const unsigned planes = lattice_.held_planes(p);
     unsigned axes = 0;
     for (int a = 0; a < 3; ++a)
-      if (faces >> 2 * a & 3) axes |= 1u << a;
+      if ((planes | planes >> 6) >> 2 * a & 3) axes |= 1u << a;
     return axes;
   }
   Vec3 without_held(Index p, Vec3 step) const {

@@ -77,7 +77,16 @@ class FeatureSurface : public ReferenceSurface {
 
   /// Whether the bodies are in a volume with labels.
   bool is_surrounded() const { return surroundings_ != nullptr; }
+  /// \param surroundings of the finished mesh: the curves in which its border ends are known from that only
+  void set_surroundings(std::shared_ptr<const ReferenceSurface> surroundings) {
+    surroundings_ = std::move(surroundings);
+  }
   std::optional<double> creased_size() const override { return creased_size_; }
+  /// The planes of the border of the volume in which a point is, see side_planes(); none without a volume.
+  /// \param slack max distance, cells
+  unsigned border_planes(const Vec3& point, double slack = CutTuning::Fitting::in_border) const;
+  /// Puts a point beside planes of the border into them.
+  Vec3 onto_border(const Vec3& point, unsigned planes) const;
   /// True for a face between two labels around the bodies, or between one and the outside.
   bool is_beside_bodies(const InterfaceTriangle& face) const {
     return is_beside_bodies(face.material, face.other);

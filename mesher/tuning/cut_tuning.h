@@ -209,6 +209,16 @@ struct CutTuning {
     static constexpr int max_own_halvings = 3;
     /// Points within this distance of their target, cells, have arrived: allows for rounding.
     static constexpr double arrived = 1e-12;
+    /// Points within this distance of a plane of the border of a volume, cells, are in it: rounding, as
+    /// DomainTuning::Frames::share_of_rounding permits it.
+    static constexpr double in_border = 0x1p-20;
+    /// Such points go to their patch or crease and back into the plane at most this often, until they move
+    /// by less than the second distance, cells: enough where both meet at 35 degrees or more.
+    static constexpr int border_steps = 60;
+    static constexpr double border_arrived = 1e-7;
+    /// Max distance of these targets from the patch or crease, cells: LabelTuning::Border::slack in the
+    /// smallest cells beside bodies.
+    static constexpr double border_slack = 0.05;
   };
 
   /// Points that hold each other back and are moved to their targets together.
