@@ -31,13 +31,13 @@ namespace tetwright {
 
 namespace {
 
-/// Sets the patches 1 to 6 of the faces on the sides of a volume.
+/// Sets the patches 1 to 6 of the faces on the sides of a volume, also of those between a label and a body
+/// that continues beyond.
 /// \param sides side_planes() of each point
 void number_box_patches(std::vector<InterfaceTriangle>& interfaces, const std::vector<std::uint8_t>& sides) {
   parallel_for(0, interfaces.size(), CellGrains::elements, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       InterfaceTriangle& t = interfaces[i];
-      if (t.other) continue;
       const unsigned common = sides[t.ids[0]] & sides[t.ids[1]] & sides[t.ids[2]];
       if (common) t.patch = static_cast<std::uint16_t>(1 + std::countr_zero(common));
     }
@@ -221,7 +221,7 @@ void name_border_patches(const std::vector<InterfaceTriangle>& faces, const Grid
   std::array<std::set<MaterialTag>, 6> materials;
   std::set<InterfacePatch> patches;
   for (const InterfaceTriangle& t : faces) {
-    if (t.patch == 0) continue;
+    if (t.patch == 0 || t.other) continue;
     TETWRIGHT_CHECK(t.patch <= names.size());
     if (patches.insert({t.pair(), t.patch}).second) materials[t.patch - 1u].insert(t.material);
   }

@@ -488,6 +488,7 @@ class SurfaceMeshing {
         input_, features_.bodies, CellTuning::Patches::corner_reach * cell, dense.field,
         features_.complex ? &*features_.complex : nullptr, bodies_.caps, features_.given_up, features_.cells,
         volume_ ? dense.reference : nullptr);
+    if (volume_) features->set_protected(volume_->protected_labels);
     const PatchesBesideBodies beside(dense.mesh, *features);
     // Labels around bodies are no part of their complex.
     if (input_.complex && !volume_)

@@ -179,6 +179,7 @@ void FeatureSurface::add_complex(const ComplexPatches& complex, double corner_re
 }
 
 std::optional<std::size_t> FeatureSurface::sheet_of(const InterfaceTriangle& face) const {
+  if (is_beside_bodies(face)) return {};
   const auto find = [&](MaterialOrOutside material) -> std::optional<std::size_t> {
     const auto body = material ? bodies_.find(*material) : bodies_.end();
     if (body == bodies_.end()) return {};

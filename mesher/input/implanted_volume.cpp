@@ -7,6 +7,7 @@
 #include "common/geometry/box_tree.h"
 #include "common/message_text.h"
 #include "mesher/complex/labelled_complex.h"
+#include "mesher/tuning/domain_tuning.h"
 #include "mesher/tuning/input_tuning.h"
 #include "mesher/tuning/label_tuning.h"
 #include "tetwright/error.h"
@@ -102,6 +103,18 @@ void report_leaving(const LabelInput& labels, MesherInput& bodies) {
                 in_voxels.high[axis] > labels.size[a] - 0.5 + LabelTuning::Border::slack;
     }
     if (!leaves) continue;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto axis = static_cast<int>(a);
+      const double voxels_across =
+          std::max(in_voxels.high[axis], labels.size[a] - 0.5) - std::min(in_voxels.low[axis], -0.5);
+      if (voxels_across > DomainTuning::Frames::max_resolution)
+        throw InputError(body.file, 0,
+                         "'" + body.name + "' extends " + box_text(box) + ", and the volume " + labels.file +
+                             " " + box_text(box_of(labels)) + ": together " + short_number(voxels_across) +
+                             " voxels along a side, and at most " +
+                             std::to_string(DomainTuning::Frames::max_resolution) +
+                             " are possible; check the units, or cut off what is far outside");
+    }
     all.add(box.low);
     all.add(box.high);
     names += (count++ ? ", '" : "'") + body.name + "'";

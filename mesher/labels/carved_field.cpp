@@ -72,8 +72,10 @@ class CarvedField::Sampler final : public FieldSampler {
       // Inside a body only protected labels are across an interface.
       const float base = is_protected_at(point, r) ? -std::fabs(depth) : depth;
       if (r == label.region) return base;
-      const RegionIndex both[2] = {r, label.region};
-      labels_->values(place, both, distances);
+      // The layer is for labels that bodies carve.
+      const bool here = is_protected(r) && place != point;
+      const RegionIndex both[2] = {r, here ? labels_->nearest(point).region : label.region};
+      labels_->values(here ? point : place, both, distances);
       return base + (distances[0] - distances[1]);
     };
     const float middle = value_of(nearest.region) + nearest.margin;
@@ -245,13 +247,14 @@ class CarvedField::Sampler final : public FieldSampler {
         *out = sign * depth.value;
         *slopes = sign * depth.slope;
         if (r != label) {
-          const RegionIndex both[2] = {r, label};
+          const bool here = is_protected(r) && place != point;
+          const RegionIndex both[2] = {r, here ? labels_->nearest(point).region : label};
           double values[2];
           Vec3 of_labels[2];
-          labels_->values_and_gradients(place, both, values, of_labels);
+          labels_->values_and_gradients(here ? point : place, both, values, of_labels);
           const Vec3 slope = of_labels[0] - of_labels[1];
           *out += values[0] - values[1];
-          *slopes += slope - slope.dot(along) * along;
+          *slopes += here ? slope : Vec3(slope - slope.dot(along) * along);
         }
       }
       ++out;
@@ -370,6 +373,13 @@ std::vector<LeafOrigin> CarvedField::band_leaves(RegionIndex region) const {
     for (const RegionIndex r : rules_->of_protected) add(r);
   parallel_sort_unique(leaves);
   return leaves;
+}
+
+std::optional<Vec3> CarvedField::project(const Vec3& point, MaterialOrOutside first, MaterialOrOutside second,
+                                         double max_distance) const {
+  if (first.has_value() != second.has_value() && crosses_border(first ? *first : *second))
+    return bodies_->project(point, first, second, max_distance);
+  return MaterialField::project(point, first, second, max_distance);
 }
 
 bool CarvedField::is_near_bodies(const Vec3& point) const {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "mesher/domain/material_field.h"
@@ -41,6 +42,9 @@ class CarvedField final : public MaterialField, private WallChanges, private Vox
   std::shared_ptr<const MaterialField> refined(int refinement) const override;
   std::vector<MortonKey> interface_voxels() const override;
   std::vector<LeafOrigin> band_leaves(RegionIndex region) const override;
+  /// The faces of a body beside the outside are its own also beyond the border, where labels continue here.
+  std::optional<Vec3> project(const Vec3& point, MaterialOrOutside first, MaterialOrOutside second,
+                              double max_distance) const override;
   const WallChanges* wall_changes() const override { return bodies_->wall_changes() ? this : nullptr; }
   const VoxelVolume* volume() const override { return this; }
 

@@ -33,6 +33,8 @@ struct CutTuning {
     /// 0.41 of Labelle & Shewchuk 2007, points snap onto flat patches from both sides and tets would be
     /// inverted.
     static constexpr double near_long = 0.35, near_short = 0.49;
+    /// A point in the border of a volume with a cut this close, likewise, is on the interface: rounding.
+    static constexpr double is_there = 1e-3;
     /// Number of steps per edge in which distances are compared, because all points along a flat face have
     /// nearly the same distance. Must fit in a byte.
     static constexpr double distance_steps = 32;

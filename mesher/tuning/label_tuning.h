@@ -97,8 +97,9 @@ struct LabelTuning {
     /// Share of the band from which on a point is far from surfaces.
     static constexpr double far_share = 0.98;
     /// Distances from protected labels, in layers, between which the layer grows from nothing to its
-    /// thickness: half a voxel, by which interfaces are uncertain, and less than distances reach.
-    static constexpr double without_layer = 2, with_layer = 6;
+    /// thickness. The second is less than a voxel, since distances of labels are clamped to two, and those
+    /// from protected ones to half of it where two others meet.
+    static constexpr double without_layer = 1.5, with_layer = 3.5;
     /// Distance from the border of the volume, voxels of the frame, from which on labels beyond it are left
     /// out before points move: more than moves depend on.
     static constexpr double far_beyond = 4;
