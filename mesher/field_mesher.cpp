@@ -9,6 +9,7 @@
 
 #include "common/geometry/predicates.h"
 #include "common/message_text.h"
+#include "mesher/cut/beyond_border.h"
 #include "mesher/cut/cut_off_surface.h"
 #include "mesher/cut/cutting.h"
 #include "mesher/cut/thin_wall_recovery.h"
@@ -30,8 +31,9 @@ namespace tetwright {
 
 namespace {
 
-/// Sets the patches 1 to 6 of the faces on the sides of the frame's box.
-/// \param sides box_faces() of each point
+/// Sets the patches 1 to 6 of the faces on the sides of a volume, also of those between a label and a body
+/// that continues beyond.
+/// \param sides side_planes() of each point
 void number_box_patches(std::vector<InterfaceTriangle>& interfaces, const std::vector<std::uint8_t>& sides) {
   parallel_for(0, interfaces.size(), CellGrains::elements, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -65,12 +67,13 @@ std::array<std::string, 6> border_names(const Eigen::Matrix3d& axes) {
 TetMesh to_input_units(CutMesh cut, const MaterialField& field) {
   TetMesh mesh;
   const GridFrame& frame = field.frame();
+  const CellBox volume = frame.volume();
   mesh.points = std::move(cut.points);
   std::vector<std::uint8_t> candidates = std::move(cut.on_interface);
   std::vector<std::uint8_t> sides(mesh.points.size());
   parallel_for(0, mesh.points.size(), CellGrains::elements, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      sides[i] = static_cast<std::uint8_t>(box_faces(mesh.points[i], frame.box));
+      sides[i] = static_cast<std::uint8_t>(side_planes(mesh.points[i], volume));
       if (sides[i]) candidates[i] = 1;
       mesh.points[i] = frame.to_input(mesh.points[i]);
     }
@@ -218,7 +221,7 @@ void name_border_patches(const std::vector<InterfaceTriangle>& faces, const Grid
   std::array<std::set<MaterialTag>, 6> materials;
   std::set<InterfacePatch> patches;
   for (const InterfaceTriangle& t : faces) {
-    if (t.patch == 0) continue;
+    if (t.patch == 0 || t.other) continue;
     TETWRIGHT_CHECK(t.patch <= names.size());
     if (patches.insert({t.pair(), t.patch}).second) materials[t.patch - 1u].insert(t.material);
   }
@@ -265,6 +268,7 @@ FieldMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   LatticePoints points = lattice_points(octree);
   stages.throw_if_stopped();
   std::vector<NearestRegion> regions = lattice_regions(points, *field);
+  clear_far_beyond(*field, points, regions);
   validate_regions(regions_there(*field, regions));
   stages.throw_if_stopped();
   report.lattice_estimate = estimate_from_lattice(octree, points, regions, memory, options);
@@ -299,6 +303,7 @@ FieldMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
   stages.begin("cutting");
   lattice.stars.forget_tets();
   CutMesh cut = cut_lattice(std::move(lattice));
+  drop_beyond_border(*field, cut);
   stages.throw_if_stopped();
   // Moves may have removed a region with few lattice points, or it was an isolated vertex.
   validate_regions(
@@ -307,6 +312,7 @@ FieldMesh mesh_field(std::shared_ptr<const MaterialField> field, std::vector<Mor
     std::shared_ptr<const MaterialField> as_is = walls->with_true_walls();
     // Points on sheets next to thin walls stay.
     std::vector<std::uint8_t> with_sheets = cut.on_interface;
+    if (field->volume()) cut.on_interface = on_interface_off_border(*field, cut);
     if (sheeted) cut.on_interface = on_interfaces_without_sheets(cut, *sheeted);
     report.thickened = thickened_report(recover_thin_walls(cut, *walls, *as_is), field->frame());
     cut.on_interface = std::move(with_sheets);

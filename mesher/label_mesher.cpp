@@ -5,6 +5,7 @@
 
 #include "mesher/features/border_creases.h"
 #include "mesher/field_mesher.h"
+#include "mesher/labels/border_sides.h"
 #include "mesher/labels/label_field.h"
 #include "mesher/labels/label_thickness.h"
 #include "mesher/lattice/redundant_cells.h"
@@ -43,7 +44,7 @@ double cell_size(const LabelInput& labels, const MesherOptions& options) {
 }
 
 VolumeField make_volume_field(const LabelInput& labels, const MesherOptions& options, MesherReport& report,
-                              Progress* progress) {
+                              Progress* progress, const MesherInput* bodies) {
   report.cell_size = cell_size(labels, options);
   report.resolution = static_cast<int>(std::ceil(longest_side(labels) / report.cell_size - 0.5));
   if (options.keep_outside)
@@ -52,7 +53,8 @@ VolumeField make_volume_field(const LabelInput& labels, const MesherOptions& opt
         throw UsageError("the material '" + m.name + "' of tag " + std::to_string(m.tag) +
                          " conflicts with the kept outside; omit --keep-outside or give it "
                          "another name");
-  const GridFrame voxels = label_frame(labels, report.cell_size, options.uniform);
+  GridFrame voxels = label_frame(labels, report.cell_size, options.uniform);
+  if (bodies) voxels = frame_around(*bodies, voxels, labels.file);
   ThinLabels thin;
   if (!options.uniform) thin = find_thin_labels(labels, voxels, progress);
   VolumeField made;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -19,9 +20,11 @@
 #include "mesher/features/surface_features.h"
 #include "mesher/field_mesher.h"
 #include "mesher/input/expected_solids.h"
+#include "mesher/labels/border_sides.h"
 #include "mesher/labels/carved_field.h"
 #include "mesher/labels/carved_volume.h"
 #include "mesher/level_sets/field_solid.h"
+#include "mesher/materials_left.h"
 #include "mesher/mesh_estimate.h"
 #include "mesher/sizing/narrow_sheets.h"
 #include "mesher/sizing/thin_bodies.h"
@@ -34,89 +37,6 @@
 namespace tetwright {
 
 namespace {
-
-/// True if all points are on the plane of the largest triangle.
-bool is_flat(const RepairedSurface& surface) {
-  Vec3 normal = Vec3::Zero(), on_plane = Vec3::Zero();
-  Box3 box;
-  for (const Triangle& t : surface.triangles) {
-    const Vec3 &a = surface.points[t[0]], &b = surface.points[t[1]], &c = surface.points[t[2]];
-    for (const Vec3& p : {a, b, c}) box.add(p);
-    const Vec3 n = (b - a).cross(c - a);
-    if (n.squaredNorm() <= normal.squaredNorm()) continue;
-    normal = n;
-    on_plane = a;
-  }
-  const double slack = CellTuning::Patches::flat_surface * normal.norm() * (box.high - box.low).norm();
-  return std::all_of(surface.triangles.begin(), surface.triangles.end(), [&](const Triangle& t) {
-    return std::all_of(t.begin(), t.end(),
-                       [&](Index p) { return std::fabs(normal.dot(surface.points[p] - on_plane)) <= slack; });
-  });
-}
-
-/// Why open surfaces did not become one, to be appended to an error; empty if there are none.
-std::string gap_text(const MesherInput& input) {
-  for (const Diagnostic& f : input.findings)
-    if (f.code == DiagnosticCode::surfaces_not_joined)
-      return "; " + std::to_string(f.count) + " " + f.what + ", at " + place_text(f.places[0]);
-  return "";
-}
-
-/// Throws InputError if a surface that vanished from the mesh is flat or not closed.
-void validate_encloses(const MesherInput& input, const MesherInput::Body& body) {
-  if (is_flat(body.surface))
-    throw InputError(body.file, 0,
-                     "the surface lies in a plane and encloses nothing; give the surface of a solid, or use "
-                     "--thicken D for "
-                     "a plate" +
-                         gap_text(input));
-  if (body.surface.closed < body.surface.triangles.size())
-    throw InputError(
-        body.file, 0,
-        "the surface is not closed and encloses nothing that cells of this size can resolve; close "
-        "its holes, or use a higher resolution if it is closed but for small ones. --base makes a block of a "
-        "height field, --thicken a shell of a sheet" +
-            gap_text(input));
-}
-
-/// Throws an error that names the vanished material and a remedy.
-void validate_materials_left(const MesherInput& input, const MaterialField& field,
-                             const std::vector<std::uint8_t>& there) {
-  if (std::count(there.begin() + 1, there.end(), 1) == 0) {
-    validate_encloses(input, input.bodies[0]);
-    if (input.bodies.size() > 1)
-      throw NothingToMeshError(input.bodies[0].file +
-                               ": this and all other surfaces are smaller than a cell, since together they "
-                               "extend from " +
-                               place_text(input.low) + " to " + place_text(input.high) +
-                               "; check the units and positions of all, or use a higher resolution");
-    throw NothingToMeshError(
-        input.bodies[0].file +
-        ": the surface is smaller than a cell; use a higher resolution or a smaller voxel size");
-  }
-  for (std::size_t r = 1; r < there.size(); ++r) {
-    if (there[r]) continue;
-    const FieldRegion& region = field.regions()[r];
-    const auto body = std::find_if(input.bodies.begin(), input.bodies.end(),
-                                   [&](const MesherInput::Body& b) { return b.tag == region.tag; });
-    if (body == input.bodies.end())
-      throw InputError(
-          input.bodies[0].file, 0,
-          "nothing is left of the layer '" + region.name +
-              "': it is thinner than the smallest cells or later surfaces cover it; use a higher "
-              "resolution, or list the surfaces that enclose it first");
-    if (body == input.bodies.begin() && !input.layers.empty())
-      throw InputError(body->file, 0,
-                       "nothing is left of '" + region.name +
-                           "' inside its layers; make the layers thinner or use a higher resolution");
-    validate_encloses(input, *body);
-    throw InputError(
-        body->file, 0,
-        "nothing is left of the material '" + region.name +
-            "': it is smaller than a cell or later surfaces cover it; list the outermost surface "
-            "first, or use a higher resolution");
-  }
-}
 
 /// Determines the expected solids: from the surfaces if they have no flaw, else from the distances if the
 /// voxels resolve all of them.
@@ -225,17 +145,6 @@ MesherEstimate estimate_of_bodies(const ImplantedVolume& volume, MesherOptions o
   return estimate_mesh(volume.bodies, options);
 }
 
-/// Throws an error that names a label of which bodies leave nothing, or which is smaller than a cell.
-void validate_carved_labels_left(const ImplantedVolume& volume, const std::vector<std::uint8_t>& there) {
-  for (std::size_t r = 1; r < there.size(); ++r)
-    if (!there[r])
-      throw InputError(volume.labels.file, 0,
-                       "nothing is left of '" + volume.labels.materials[r - 1].name +
-                           "' beside the bodies: they cover it, or what they leave is smaller than a cell; "
-                           "leave it out by --labels, keep it by --protect-labels, or use a smaller "
-                           "--voxel-size");
-}
-
 /// The stages of mesh_surfaces() and mesh_implanted(), in this order.
 class SurfaceMeshing {
  public:
@@ -260,7 +169,8 @@ class SurfaceMeshing {
     report_.sheets = expected_sheets(input_);
     expect_materials(input_, *bodies_.field, interface_voxels_, thin_.finer.refinement > 0, report_);
     if (volume_) carve_volume();
-    const CreaseCurves border = std::exchange(report_.creases, {});
+    CreaseCurves border = std::exchange(report_.creases, {});
+    if (volume_) border = creases_off_bodies(border);
     FieldMesh made = mesh_field(field_, std::move(interface_voxels_), std::move(thin_.finer), options_,
                                 volume_ ? label_memory(volume_->labels, report_.cell_size) : MemoryModel{},
                                 std::move(report_), stages_,
@@ -322,10 +232,11 @@ class SurfaceMeshing {
                        short_number(max_cell) + ", are possible");
     if (options_.keep_outside) validate_outside_is_free(input_);
     validate_estimate(estimate_mesh(*volume_, options_));
-    VolumeField made = make_volume_field(labels, options_, report_, stages_.progress());
+    VolumeField made = make_volume_field(labels, options_, report_, stages_.progress(), &input_);
     labels_ = std::move(made.field);
     label_cells_ = std::move(made.finer);
     voxels_ = labels_->voxels();
+    crossed_ = crossed_sides(*volume_, voxels_);
     const MesherEstimate bodies = estimate_of_bodies(*volume_, options_);
     report_.estimate.tets += bodies.tets;
     report_.estimate.bytes += bodies.bytes;
@@ -334,12 +245,50 @@ class SurfaceMeshing {
 
   /// Combines bodies with the volume around them.
   void carve_volume() {
-    field_ = CarvedField::make(labels_, bodies_.field, protected_regions(*volume_), layer_around_bodies());
-    report_.carved = measure_carving(*volume_, *bodies_.field, stages_.progress());
+    field_ = CarvedField::make(labels_, bodies_.field, protected_regions(*volume_), layer_around_bodies(),
+                               crossed_);
+    Carving carving = measure_carving(*volume_, *bodies_.field, stages_.progress());
+    report_.carved = std::move(carving.labels);
+    in_labels_ = std::move(carving.bodies);
     interface_voxels_ = field_->interface_voxels();
     thin_.finer = combine(std::move(thin_.finer), std::move(label_cells_));
-    // The part of a body that protected labels leave is not known from its surface.
-    if (!volume_->protected_labels.empty()) report_.expected.clear();
+    for (std::size_t b = 0; b < in_labels_.size(); ++b) {
+      const MesherInput::Body& body = input_.bodies[b];
+      if (in_labels_[b].in_labels == 0) report_.off_labels.push_back(body.name);
+      // The part of a body that protected labels leave is not known from its surface.
+      if (in_labels_[b].beside_protected == 0) continue;
+      std::erase_if(report_.expected, [&](const ExpectedSolid& s) { return s.tag == body.tag; });
+      std::erase(report_.unknown, body.name);
+      report_.at_protected.push_back(body.name);
+    }
+  }
+  /// The parts of creases that are away from bodies.
+  CreaseCurves creases_off_bodies(const CreaseCurves& creases) const {
+    const std::unique_ptr<FieldSampler> sampler = bodies_.field->sampler();
+    const double voxel = voxel_size(volume_->labels), reach = voxel / voxels_.cell_size;
+    const auto is_free = [&](const Vec3& p) {
+      const NearestRegion body = sampler->nearest(voxels_.to_grid(p));
+      return body.region == outside_region && body.margin > std::min(reach, 0.9 * bodies_.field->band());
+    };
+    CreaseCurves kept;
+    for (const auto& [a, b] : creases.segments) {
+      const Vec3 &from = creases.points[a], &to = creases.points[b];
+      const int count = std::max(1, static_cast<int>(std::ceil((to - from).norm() / voxel)));
+      const auto at = [&](int i) -> Vec3 { return from + (to - from) * i / count; };
+      for (int i = 0, k; i < count; i = k) {
+        for (k = i; k < count && is_free(at(k)) && is_free(at(k + 1));) ++k;
+        if (k == i) {
+          ++k;
+          continue;
+        }
+        const auto first = static_cast<Index>(kept.points.size());
+        kept.points.push_back(at(i));
+        kept.points.push_back(k == count ? to : at(k));
+        kept.segments.push_back({first, first + 1});
+      }
+    }
+    std::copy_if(creases.corners.begin(), creases.corners.end(), std::back_inserter(kept.corners), is_free);
+    return kept;
   }
   /// The layer in which interfaces of labels turn towards bodies, voxels of the frame.
   double layer_around_bodies() const {
@@ -357,6 +306,7 @@ class SurfaceMeshing {
     if (!volume_) return validate_materials_left(input_, *bodies_.field, there);
     const auto labels = static_cast<std::ptrdiff_t>(volume_->labels.materials.size()) + 1;
     validate_carved_labels_left(*volume_, {there.begin(), there.begin() + labels});
+    validate_unprotected_left(*volume_, in_labels_, {there.begin() + labels, there.end()});
     std::vector<std::uint8_t> of_bodies(there.begin() + labels - 1, there.end());
     of_bodies[outside_region] = there[outside_region];
     validate_materials_left(input_, *bodies_.field, of_bodies);
@@ -378,9 +328,19 @@ class SurfaceMeshing {
                                            budget_.base_tets),
                        asked});
     stages_.throw_if_stopped();
-    bodies_ = build_field(input_, voxels_, options_.keep_outside, {options_.min_gap, options_.min_thickness},
-                          budget_, std::move(cells), stages_.progress());
+    bodies_ = build_field(with_continued_faces(), voxels_, options_.keep_outside,
+                          {options_.min_gap, options_.min_thickness}, budget_, std::move(cells),
+                          stages_.progress());
     field_ = bodies_.field;
+  }
+
+  /// The bodies as distances are measured from them.
+  MesherInput with_continued_faces() const {
+    MesherInput input = input_;
+    if (volume_)
+      for (MesherInput::Body& body : input.bodies)
+        body.surface = continued_beyond(*volume_, voxels_, crossed_, std::move(body.surface));
+    return input;
   }
 
   /// Sheets and parts that are thin for the cells: smaller cells where these help, else a report.
@@ -419,10 +379,11 @@ class SurfaceMeshing {
   void fit_features(DenseMesh& dense, SheetParts* parts) {
     stages_.begin("creases");
     const double cell = features_.cell;
-    const auto features = std::make_shared<const FeatureSurface>(
+    const auto features = std::make_shared<FeatureSurface>(
         input_, features_.bodies, CellTuning::Patches::corner_reach * cell, dense.field,
         features_.complex ? &*features_.complex : nullptr, bodies_.caps, features_.given_up, features_.cells,
         volume_ ? dense.reference : nullptr);
+    if (volume_) features->set_protected(volume_->protected_labels);
     const PatchesBesideBodies beside(dense.mesh, *features);
     // Labels around bodies are no part of their complex.
     if (input_.complex && !volume_)
@@ -435,6 +396,7 @@ class SurfaceMeshing {
     fit_creases(dense.mesh, *features, *field_, cell);
     beside.restore(dense.mesh, *features);
     measure_walls(dense, *field_);
+    if (volume_) settle_border(dense, *features);
     // Faces across a closed gap are no part of the region on either side of it.
     for (const InterfaceTriangle& t : dense.mesh.interfaces)
       if (const SurfaceRegion group = features->group_of(t.patch);
@@ -443,6 +405,21 @@ class SurfaceMeshing {
     dense.reference = features;
     dense.report.seconds_cut += stages_.seconds();
     dense.report.loops_cut += stages_.loops();
+  }
+
+  /// Replaces what was known of the border of a volume before points moved.
+  void settle_border(DenseMesh& dense, FeatureSurface& features) const {
+    // Faces of bodies in the border have other patches now.
+    std::erase_if(dense.mesh.patch_groups, [&](const auto& group) {
+      const auto& [pair, patch] = group.first;
+      return !features.is_beside_bodies({{}, pair.first, pair.second, patch});
+    });
+    TetMesh beside;
+    beside.points = dense.mesh.points;
+    std::copy_if(dense.mesh.interfaces.begin(), dense.mesh.interfaces.end(),
+                 std::back_inserter(beside.interfaces),
+                 [&](const InterfaceTriangle& t) { return features.is_beside_bodies(t); });
+    features.set_surroundings(reference_of(beside, dense.field));
   }
 
   std::size_t filling_tets(const MesherReport& report) const {
@@ -461,6 +438,8 @@ class SurfaceMeshing {
   BodySizes body_cells_;                      ///< that are halved because bodies in it are thin
   RefinementRegions label_cells_;             ///< that are halved because its labels are thin
   GridFrame voxels_;
+  std::vector<BodyInLabels> in_labels_;  ///< by body
+  unsigned crossed_ = 0;                 ///< sides of the volume, see crossed_sides()
   RefinementBudget budget_;
   SurfaceFeatures features_;
   BodyField bodies_;

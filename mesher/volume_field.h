@@ -19,11 +19,12 @@ struct VolumeField {
 };
 
 /// Computes the distances of the labels and finds the cells that are halved.
+/// \param bodies that are put into the volume, or null: the frame continues where they come near its border
 /// \param report receives cell size, estimate, thin parts and creases
 /// \throws UsageError for options that conflict with the labels
 /// \throws Interrupted
 VolumeField make_volume_field(const LabelInput& labels, const MesherOptions& options, MesherReport& report,
-                              Progress* progress);
+                              Progress* progress, const MesherInput* bodies = nullptr);
 
 /// Checks that the mesh has every label.
 /// \param there by region: 0 if nothing of it is left

@@ -302,13 +302,20 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
     {.code = volume_enlarged,
      .name = "volume-enlarged",
      .severity = Severity::note,
-     .title = "volume enlarged around bodies",
+     .title = "bodies beyond the border of a volume",
+     .message = "N bodies cross its border (meshed beyond it, where labels end: 'lead' extends from X Y Z to "
+                "X Y Z, and the volume from X Y Z to X Y Z)",
+     .cause = "A surface in a segmented volume is partly outside of it, and bodies are not cut off.",
+     .remedy = "None if that is wanted: labels and their patches end at the border as without bodies."},
+    {.code = body_off_labels,
+     .name = "body-off-labels",
+     .severity = Severity::note,
+     .title = "body beside all labels",
      .message =
-         "N voxels of the outside (added around the volume, since the bodies extend from X Y Z to X Y Z, "
-         "and the volume from X Y Z to X Y Z)",
-     .cause = "A surface in a segmented volume reaches its border or beyond it, and bodies are not cut off.",
-     .remedy = "None if that is wanted: labels that reached the border there end as they do beside other "
-               "outside voxels, without a patch of the border."},
+         "'lead' is in no label of the volume, only outside (meshed beside them; check its position and "
+         "--surface-space if it should carve labels)",
+     .cause = "A surface in a segmented volume is only where the volume has the outside.",
+     .remedy = "None if that is wanted; otherwise check units, position and space of the surface."},
     {.code = surface_space_unknown,
      .name = "surface-space-unknown",
      .severity = Severity::note,

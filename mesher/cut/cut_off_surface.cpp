@@ -71,11 +71,13 @@ CutOffSurface::CutOffSurface(const TetMesh& mesh, std::shared_ptr<const Material
 
 double CutOffSurface::signed_distance(const Vec3& point, MaterialTag material) const {
   const GridFrame& frame = field_->frame();
+  const CellBox volume = frame.volume();
   double distance = field_->signed_distance(point, material);
+  if (field_->volume()->crosses_border(material)) return distance;
   for (int a = 0; a < 3; ++a) {
     const double along = normals_[a].dot(point - frame.origin);
-    const double side = frame.cell_size * frame.box[a] * normals_[a].dot(frame.axes.col(a));
-    distance = std::max({distance, -along, along - side});
+    const double cell = frame.cell_size * normals_[a].dot(frame.axes.col(a));
+    distance = std::max({distance, cell * volume.low[a] - along, along - cell * volume.high[a]});
   }
   return distance;
 }
@@ -91,7 +93,8 @@ std::optional<Vec3> CutOffSurface::onto_patch(const Vec3& point, MaterialOrOutsi
   if (patch == 0) return field_->project(point, first, second, max_distance);
   const GridFrame& frame = field_->frame();
   const int axis = (patch - 1) / 2;
-  const int side = patch % 2 == 1 ? 0 : frame.box[axis];
+  const CellBox volume = frame.volume();
+  const int side = (patch % 2 == 1 ? volume.low : volume.high)[axis];
   const Vec3& normal = normals_[axis];
   const double off = normal.dot(point - frame.origin - frame.cell_size * side * frame.axes.col(axis));
   if (std::abs(off) > max_distance) return {};

@@ -11,8 +11,8 @@
 
 namespace tetwright {
 
-/// The interfaces of a field that ends at its box, for a mesh that is cut off there. Patch 0 consists of the
-/// interfaces between the field's regions. Patches 1 to 6 are the faces of the box: 1 + 2 * axis for the
+/// The interfaces of the field of a volume, for a mesh that is cut off at its border. Patch 0 consists of the
+/// interfaces between the field's regions. Patches 1 to 6 are the sides of the border: 1 + 2 * axis for the
 /// lower one, 2 + 2 * axis for the upper one. Faces and edges of the box are exact; the curves in which
 /// interfaces meet the box come from the dense mesh.
 class CutOffSurface final : public ReferenceSurface {

@@ -165,9 +165,9 @@ class Mover {
     if (lattice_.is_on[p] || is_certain(p)) return std::nullopt;
     const std::optional<RegionSet> regions = pure_regions(lattice_, p);
     if (!regions) return std::nullopt;
-    const unsigned faces = lattice_.box_faces(p);
+    const unsigned planes = lattice_.held_planes(p);
     double nearest = 0;
-    Index other = no_index;
+    Index other = no_index, beyond = no_index;
     bool too_near = false;
     for (Index t : star(p))
       for (Index q : lattice_.tets[t]) {
@@ -176,15 +176,21 @@ class Mover {
         const double share = lattice_.cut_share(p, own, q, r);
         too_near |= share <= (lattice_.is_centre[p] == lattice_.is_centre[q] ? Snapping::near_long
                                                                              : Snapping::near_short);
-        if ((lattice_.box_faces(q) & faces) != faces) continue;  // out of reach
+        if ((lattice_.held_planes(q) & planes) != planes) {
+          // Out of reach, unless the interface is in the border of a volume, where the point already is.
+          if (planes >> 6 && share <= Snapping::is_there) beyond = std::min(beyond, q);
+          continue;
+        }
         const double length = share * (lattice_.positions[q] - lattice_.positions[p]).norm();
         if (other == no_index || length < nearest || (length == nearest && q < other)) {
           nearest = length;
           other = q;
         }
       }
+    const bool is_there = other == no_index;
+    if (is_there) other = beyond;
     if (!too_near || other == no_index) return std::nullopt;
-    const Vec3 &from = lattice_.positions[p], &to = lattice_.positions[other];
+    const Vec3 &from = lattice_.positions[p], &to = is_there ? from : lattice_.positions[other];
     Candidate c;
     c.point = p;
     c.other = other;
@@ -195,17 +201,18 @@ class Mover {
     if (!sampler.project(*regions, c.projected, held_axes(p)) || (c.projected - from).norm() > c.room())
       c.projected = on_edge(c);
     const double distance = c.at_junction ? (c.projected - from).norm() : lattice_.margin(p);
-    c.rank = static_cast<std::uint8_t>(std::clamp(distance / c.room(), 0.0, 1.0) * Snapping::distance_steps);
+    const double share = is_there ? 0 : std::clamp(distance / c.room(), 0.0, 1.0);
+    c.rank = static_cast<std::uint8_t>(share * Snapping::distance_steps);
     return c;
   }
 
   /// The axes along which a point must not move, one bit each: points stay on the faces, edges and corners of
-  /// the box.
+  /// the box, and on the planes of the border of a volume.
   unsigned held_axes(Index p) const {
-    const unsigned faces = lattice_.box_faces(p);
+    const unsigned planes = lattice_.held_planes(p);
     unsigned axes = 0;
     for (int a = 0; a < 3; ++a)
-      if (faces >> 2 * a & 3) axes |= 1u << a;
+      if ((planes | planes >> 6) >> 2 * a & 3) axes |= 1u << a;
     return axes;
   }
   Vec3 without_held(Index p, Vec3 step) const {

@@ -51,10 +51,26 @@ GridFrame make_box_frame(const Vec3& corner, const Eigen::Matrix3d& edges, doubl
   return frame;
 }
 
+GridFrame continued_frame(GridFrame frame, const std::array<int, 3>& before,
+                          const std::array<int, 3>& after) {
+  const int root = 1 << frame.root_level;
+  const auto whole_roots = [&](int cells) { return (cells + root - 1) / root * root; };
+  for (int a = 0; a < 3; ++a) {
+    const int low = whole_roots(before[a]);
+    frame.border.low[a] = low;
+    frame.border.high[a] = low + frame.box[a];
+    frame.origin -= frame.cell_size * low * frame.axes.col(a);
+    frame.box[a] += low + whole_roots(after[a]);
+    frame.cells[a] = whole_roots(frame.box[a]);
+  }
+  return frame;
+}
+
 GridFrame refined_frame(GridFrame frame, int levels) {
   frame.cell_size = std::ldexp(frame.cell_size, -levels);
   for (int& c : frame.cells) c <<= levels;
-  for (int& c : frame.box) c <<= levels;
+  for (auto* counts : {&frame.box, &frame.border.low, &frame.border.high})
+    for (int& c : *counts) c <<= levels;
   frame.root_level += levels;
   return frame;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include <Eigen/Dense>
 
@@ -42,11 +43,17 @@ struct GridFrame {
   std::array<int, 3> cells{1, 1, 1};  ///< finest cells along each side of the box, a multiple of 2^root_level
   /// The part of `cells` that the lattice fills: all of it for surfaces, up to the border for a volume.
   std::array<int, 3> box{1, 1, 1};
+  /// The border of a volume if bodies need the lattice to continue beyond it, as a box of finest cells; low
+  /// and high are equal if the lattice ends at the border. No tet crosses the planes of its sides.
+  CellBox border{};
   int root_level = 0;  ///< the octree's largest cells have 2^root_level finest cells to an edge
   /// Edges of a finest cell in multiples of cell_size, input space, right-handed. For surfaces they are
   /// perpendicular and of length 1.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
 
+  bool continues() const { return border != CellBox{}; }
+  /// The box of a volume, finest cells.
+  CellBox volume() const { return continues() ? border : CellBox{{0, 0, 0}, box}; }
   Vec3 to_grid(const Vec3& input) const { return axes.inverse() * (input - origin) / cell_size; }
   Vec3 to_input(const Vec3& grid) const { return origin + cell_size * (axes * grid); }
 };
@@ -62,6 +69,27 @@ inline unsigned box_faces(const Vec3& place, const std::array<int, 3>& box) {
   return faces;
 }
 
+/// The planes of the sides of a box that a point is on, within them or beyond their rims; bits as for
+/// box_faces().
+inline unsigned side_planes(const Vec3& place, const CellBox& box, double slack = 0) {
+  unsigned planes = 0;
+  for (int a = 0; a < 3; ++a) {
+    if (std::abs(place[a] - box.low[a]) <= slack) planes |= 1u << 2 * a;
+    if (std::abs(place[a] - box.high[a]) <= slack) planes |= 2u << 2 * a;
+  }
+  return planes;
+}
+
+/// The sides of a box beyond which a point is; bits as for box_faces().
+inline unsigned sides_beyond(const Vec3& place, const CellBox& box) {
+  unsigned sides = 0;
+  for (int a = 0; a < 3; ++a) {
+    if (place[a] < box.low[a]) sides |= 1u << 2 * a;
+    if (place[a] > box.high[a]) sides |= 2u << 2 * a;
+  }
+  return sides;
+}
+
 /// A frame whose box contains [low, high] (input units) and a margin (DomainTuning::Frames), rounded up to
 /// whole root cells.
 /// \param uniform root cells are finest cells; otherwise the longest side has about four to eight root cells
@@ -75,6 +103,10 @@ GridFrame make_grid_frame(const Vec3& low, const Vec3& high, double cell_size, b
 /// volume determines the octree in it. \param edges of the parallelepiped, as columns, right-handed; input
 /// units
 GridFrame make_box_frame(const Vec3& corner, const Eigen::Matrix3d& edges, double cell_size, bool uniform);
+
+/// A frame of a volume that continues beyond its border. Cells within are those of the given frame.
+/// \param before, after cells to be added along each axis; rounded up to whole root cells
+GridFrame continued_frame(GridFrame frame, const std::array<int, 3>& before, const std::array<int, 3>& after);
 
 /// A frame of the same box, refined: cells of 1/2^levels the size, root cells of the same size.
 GridFrame refined_frame(GridFrame frame, int levels);

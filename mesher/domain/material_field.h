@@ -113,11 +113,19 @@ class WallChanges {
   ~WallChanges() = default;
 };
 
-/// The segmented volume from which a field is made. Its regions are cut off at the frame's box, the volume's
-/// border; the distances themselves ignore the box. All functions may be called concurrently.
+/// The segmented volume from which a field is made. Its regions are cut off at the volume's border; the
+/// distances themselves ignore it. The lattice ends there, or continues beyond it (GridFrame::border), and
+/// the parts of regions beyond are left out afterwards. All functions may be called concurrently; points are
+/// in lattice units.
 class VoxelVolume {
  public:
-  /// True for points, lattice units, whose region is known exactly and guaranteed in the mesh. Lattice points
+  /// True if the mesh has no part of the region at the point, since it is beyond the border.
+  virtual bool leaves_out(RegionIndex, const Vec3&) const { return false; }
+  /// True for points so far beyond the border that the region there has no effect on the mesh.
+  virtual bool is_far_beyond(const Vec3&) const { return false; }
+  /// True for materials that the border does not cut off.
+  virtual bool crosses_border(MaterialTag) const { return false; }
+  /// True for points whose region is known exactly and guaranteed in the mesh. Lattice points
   /// there are not moved.
   virtual bool is_certain(const Vec3& point) const = 0;
 

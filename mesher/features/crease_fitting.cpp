@@ -31,7 +31,11 @@ class Fitter {
  public:
   Fitter(TetMesh& mesh, const FeatureSurface& surface, const CreaseLabels& labels, const MaterialField& field,
          double cell)
-      : mesh_(mesh), surface_(surface), labels_(labels), field_(field), cell_(cell) {}
+      : mesh_(mesh), surface_(surface), labels_(labels), field_(field), cell_(cell) {
+    if (surface.is_surrounded())
+      for (const Index p : labels.points())
+        if (const unsigned planes = surface.border_planes(mesh.points[p])) planes_[p] = planes;
+  }
 
   void run() {
     if (surface_.has_junctions()) {
@@ -56,7 +60,8 @@ class Fitter {
  private:
   /// The target position of vertex p if it were at `at`.
   std::optional<Vec3> place_of(Index p, const Vec3& at) const {
-    return feature_target(surface_, labels_.of(p), at, cell_);
+    const auto held = planes_.find(p);
+    return feature_target(surface_, labels_.of(p), at, cell_, held == planes_.end() ? 0 : held->second);
   }
 
   /// The two neighbours of each point along a junction of the mesh; no entry for ends and branches.
@@ -182,7 +187,7 @@ class Fitter {
     if (known.is_known && known.at == mesh_.points[p]) return known.position;
     known.is_known = true;
     known.at = mesh_.points[p];
-    const auto unfolded = unfolded_.find(p);
+    const auto unfolded = planes_.contains(p) ? unfolded_.end() : unfolded_.find(p);
     known.position = unfolded == unfolded_.end() ? place_of(p, known.at) : unfolded->second;
     return known.position;
   }
@@ -304,6 +309,7 @@ class Fitter {
   };
   std::vector<Target> targets_;           ///< by index in the list of labelled points
   std::map<Index, Vec3> unfolded_;        ///< targets of unfold_junctions()
+  std::map<Index, unsigned> planes_;      ///< of the border of a volume in which points stay, bits
   std::vector<std::uint8_t> beside_gap_;  ///< by point; empty without junctions
 };
 

@@ -308,14 +308,20 @@ void CreaseLabels::take_corners() {
       for (const FeatureSurface::Patch p : corner.patches) labels_[beside->number].patches.insert(p);
       continue;
     }
+    // Points in the border of a volume stay there.
+    const unsigned in_border = surface_.border_planes(corner.point, CutTuning::Fitting::border_slack);
+    const auto may_leave = [&](const ProjectionTree::Item& item) {
+      return (surface_.border_planes(mesh_.points[points_[item.kind[0]]]) & ~in_border) == 0;
+    };
     std::set<std::size_t> sheets;
     for (const FeatureSurface::Patch p : corner.patches) sheets.insert(surface_.sheet_of(p));
     if (sheets.size() > 1) {
       // A vertex where the same sheets meet.
-      const auto hit = tree.nearest_of(
-          corner.point, Labelling::junction_reach * cell, [&](const ProjectionTree::Item& item) {
-            return labels_[item.kind[0]].kind == Kind::crease && sheets_at(item.kind[0]) == sheets;
-          });
+      const auto hit = tree.nearest_of(corner.point, Labelling::junction_reach * cell,
+                                       [&](const ProjectionTree::Item& item) {
+                                         return labels_[item.kind[0]].kind == Kind::crease &&
+                                                may_leave(item) && sheets_at(item.kind[0]) == sheets;
+                                       });
       if (hit) {
         const Index number = tree.items()[hit->item].kind[0];
         labels_[number] = {Kind::corner, meeting, c, {}};
@@ -325,7 +331,7 @@ void CreaseLabels::take_corners() {
     }
     const auto fits = [&](const ProjectionTree::Item& item, std::size_t min_patches) {
       const FeatureLabel& own = labels_[item.kind[0]];
-      if (own.kind != Kind::patch || !own.patches.meets(meeting)) return false;
+      if (own.kind != Kind::patch || !own.patches.meets(meeting) || !may_leave(item)) return false;
       if (min_patches == 1) return true;
       const auto& around = triangles_at_[item.kind[0]];
       return std::any_of(around.begin(), around.end(), [&](Index t) {

@@ -223,6 +223,7 @@ void FeatureSurface::add_complex(const ComplexPatches& complex, double corner_re
 }
 
 std::optional<std::size_t> FeatureSurface::sheet_of(const InterfaceTriangle& face) const {
+  if (is_beside_bodies(face)) return {};
   const auto find = [&](MaterialOrOutside material) -> std::optional<std::size_t> {
     const auto body = material ? bodies_.find(*material) : bodies_.end();
     if (body == bodies_.end()) return {};
@@ -294,6 +295,25 @@ bool FeatureSurface::is_given_up(const Vec3& p, std::size_t sheet) const {
   return sheet < bodies_of_sheet_.size() &&
          std::any_of(bodies_of_sheet_[sheet].begin(), bodies_of_sheet_[sheet].end(),
                      [&](std::size_t body) { return given_up_.contains(p, body); });
+}
+
+unsigned FeatureSurface::border_planes(const Vec3& point, double slack) const {
+  if (!is_surrounded() || !field_->volume()) return 0;
+  const GridFrame& frame = field_->frame();
+  return side_planes(frame.to_grid(point), frame.volume(), slack);
+}
+
+Vec3 FeatureSurface::onto_border(const Vec3& point, unsigned planes) const {
+  if (planes == 0) return point;
+  const GridFrame& frame = field_->frame();
+  const CellBox volume = frame.volume();
+  // In skewed volumes not the closest point, unless the plane is one of several.
+  Vec3 at = frame.to_grid(point);
+  for (int a = 0; a < 3; ++a) {
+    if (planes >> 2 * a & 1) at[a] = volume.low[a];
+    if (planes >> 2 * a & 2) at[a] = volume.high[a];
+  }
+  return frame.to_input(at);
 }
 
 std::optional<FeatureSurface::Place> FeatureSurface::nearest(const Vec3& p, std::size_t sheet, double at_most,

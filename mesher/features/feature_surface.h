@@ -80,8 +80,20 @@ class FeatureSurface : public ReferenceSurface {
 
   /// Whether the bodies are in a volume with labels.
   bool is_surrounded() const { return surroundings_ != nullptr; }
+  /// \param surroundings of the finished mesh: the curves in which its border ends are known from that only
+  void set_surroundings(std::shared_ptr<const ReferenceSurface> surroundings) {
+    surroundings_ = std::move(surroundings);
+  }
+  /// \param labels around the bodies that these do not carve: faces of bodies with them are not on bodies
+  void set_protected(std::vector<MaterialTag> labels) { protected_ = std::move(labels); }
   std::optional<double> creased_size() const override { return creased_size_; }
-  /// True for a face between two labels around the bodies, or between one and the outside.
+  /// The planes of the border of the volume in which a point is, see side_planes(); none without a volume.
+  /// \param slack max distance, cells
+  unsigned border_planes(const Vec3& point, double slack = CutTuning::Fitting::in_border) const;
+  /// Puts a point beside planes of the border into them.
+  Vec3 onto_border(const Vec3& point, unsigned planes) const;
+  /// True for a face between two labels around the bodies, between one and the outside, or of a protected
+  /// one.
   bool is_beside_bodies(const InterfaceTriangle& face) const {
     return is_beside_bodies(face.material, face.other);
   }
@@ -158,11 +170,15 @@ class FeatureSurface : public ReferenceSurface {
  private:
   bool is_beside_bodies(MaterialOrOutside first, MaterialOrOutside second) const {
     const auto is_body = [&](MaterialOrOutside m) { return m && bodies_.contains(*m); };
-    return surroundings_ && !is_body(first) && !is_body(second);
+    const auto is_kept = [&](MaterialOrOutside m) {
+      return m && std::find(protected_.begin(), protected_.end(), *m) != protected_.end();
+    };
+    return surroundings_ && ((!is_body(first) && !is_body(second)) || is_kept(first) || is_kept(second));
   }
 
   std::shared_ptr<const MaterialField> field_;
   std::shared_ptr<const ReferenceSurface> surroundings_;
+  std::vector<MaterialTag> protected_;
   GivenUpZone given_up_;
   std::vector<double> cells_;           ///< at each body, input units, or empty
   std::optional<double> creased_size_;  ///< with surroundings, which are larger than bodies

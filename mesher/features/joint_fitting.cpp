@@ -86,6 +86,7 @@ class JointMoves {
     const FeatureLabel& label = labels_.of(p);
     const Vec3& at = mesh_.points[p];
     PointFreedom own{0};
+    if (surface_.border_planes(at) != 0) return own;
     if (label.kind == Kind::patch) {
       const auto place =
           surface_.nearest_of_patch(at, *label.patches.begin(), CutTuning::Fitting::target_reach * cell_);
@@ -148,13 +149,14 @@ class JointMoves {
     }
     if (!untangle(points, tets, freedom)) return;
     std::map<Index, Vec3> before;
+    const auto planes_of = [&](Index p) { return surface_.border_planes(mesh_.points[p]); };
     const double min_angle = std::min(Joint::min_solid_angle, worst_angle(patch));
     bool valid = true;
     for (const auto& [p, k] : local) {
       if (freedom[k].dimensions == 0 && !group.contains(p)) continue;
       Vec3 position = origin + cell_ * points[k];
       if (labels_.on_boundary(p) && !labels_.is_loose(p)) {
-        const auto target = feature_target(surface_, labels_.of(p), position, cell_);
+        const auto target = feature_target(surface_, labels_.of(p), position, cell_, planes_of(p));
         valid &= target.has_value();
         position = target.value_or(position);
       }
@@ -175,10 +177,9 @@ class JointMoves {
   std::map<Index, std::vector<Index>> at_;  ///< tets at points near them
 };
 
-}  // namespace
-
-std::optional<Vec3> feature_target(const FeatureSurface& surface, const FeatureLabel& label, const Vec3& at,
-                                   double cell) {
+/// feature_target() of a point that is in no plane.
+std::optional<Vec3> free_target(const FeatureSurface& surface, const FeatureLabel& label, const Vec3& at,
+                                double cell) {
   const double reach = CutTuning::Fitting::target_reach * cell;
   switch (label.kind) {
     case Kind::none:
@@ -190,6 +191,28 @@ std::optional<Vec3> feature_target(const FeatureSurface& surface, const FeatureL
       return surface.onto_crease_between(at, label.crease, reach);
     case Kind::corner:
       return surface.corners()[label.corner].point;
+  }
+  return {};
+}
+
+}  // namespace
+
+std::optional<Vec3> feature_target(const FeatureSurface& surface, const FeatureLabel& label, const Vec3& at,
+                                   double cell, unsigned planes) {
+  if (planes == 0) return free_target(surface, label, at, cell);
+  // In turn onto both, until nothing moves.
+  using Fitting = CutTuning::Fitting;
+  Vec3 place = surface.onto_border(at, planes);
+  for (int step = 0; step < Fitting::border_steps; ++step) {
+    const std::optional<Vec3> target = free_target(surface, label, place, cell);
+    if (!target) return {};
+    const Vec3 next = surface.onto_border(*target, planes);
+    if ((next - place).norm() > Fitting::border_arrived * cell) {
+      place = next;
+      continue;
+    }
+    if ((*target - place).norm() > Fitting::border_slack * cell) return {};
+    return place;
   }
   return {};
 }

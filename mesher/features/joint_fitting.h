@@ -15,8 +15,9 @@ namespace tetwright {
 /// CutTuning::Fitting::target_reach cells; nothing if it has none.
 /// \param at input units
 /// \param cell size of the cells at the surface, input units
+/// \param planes of the border of a volume in which the point must stay, see FeatureSurface::border_planes()
 std::optional<Vec3> feature_target(const FeatureSurface& surface, const FeatureLabel& label, const Vec3& at,
-                                   double cell);
+                                   double cell, unsigned planes = 0);
 
 /// Moves points to their targets that hold each other back: each group of them goes to its targets at once,
 /// and the points around give way, within their patch or along their crease if they are on the boundary,

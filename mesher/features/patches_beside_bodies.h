@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <map>
 
@@ -22,7 +23,14 @@ class PatchesBesideBodies {
     for (InterfaceTriangle& t : mesh.interfaces) {
       if (!surface.is_beside_bodies(t)) continue;
       const auto known = patches_.find(sorted(t.ids));
-      t.patch = known == patches_.end() ? std::uint16_t{0} : known->second;
+      if (known != patches_.end()) {
+        t.patch = known->second;
+        continue;
+      }
+      // Fitting creases may have split a face.
+      unsigned planes = ~0u;
+      for (const Index p : t.ids) planes &= surface.border_planes(mesh.points[p]);
+      t.patch = static_cast<std::uint16_t>(planes == 0 ? 0 : 1 + std::countr_zero(planes));
     }
   }
 

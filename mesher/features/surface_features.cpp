@@ -288,10 +288,23 @@ void report_complex_creases(const MesherInput& input, const ComplexPatches& foun
   }
 }
 
+/// The faces of bodies.
+ProjectionTree body_faces(const MesherInput& input, const TetMesh& mesh) {
+  const auto is_body = [&](MaterialOrOutside m) {
+    return m && std::any_of(input.bodies.begin(), input.bodies.end(),
+                            [&](const MesherInput::Body& b) { return b.tag == *m; });
+  };
+  std::vector<ProjectionTree::Item> faces;
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    if (is_body(t.material) || is_body(t.other)) faces.push_back({t.ids, {}});
+  return {mesh.points, std::move(faces)};
+}
+
 /// Drops creases that later bodies or protected labels cover, and creases near `junctions`, curves where
 /// three regions meet, which are accurate to half a cell only.
+/// \param faces of all bodies, or null: distances tell where these are, except beside protected labels
 void keep_visible(CreaseCurves& creases, const MesherInput& input, const DenseMesh& dense, double cell,
-                  CreaseCurves junctions) {
+                  CreaseCurves junctions, const ProjectionTree* faces = nullptr) {
   const double near = CellTuning::Patches::junction_reach * cell;
   std::vector<ProjectionTree::Item> segments;
   segments.reserve(junctions.segments.size());
@@ -299,6 +312,7 @@ void keep_visible(CreaseCurves& creases, const MesherInput& input, const DenseMe
   const ProjectionTree tree(std::move(junctions.points), std::move(segments));
   const auto is_hidden = [&](const Vec3& p) {
     if (tree.nearest(p, {}, near)) return true;
+    if (faces) return !faces->nearest(p, {}, near);
     const auto shows = [&](const auto& material) {
       return std::abs(dense.field->signed_distance(p, material.tag)) <= near;
     };
@@ -356,10 +370,12 @@ void settle_features(const MesherInput& input, const std::vector<std::vector<Vec
   }
   // Labels end at the surfaces of bodies, whose creases stay exact there.
   // Beside protected labels only those away from the curves in which bodies end are certain.
-  if (around == Surroundings::protected_labels)
-    keep_visible(dense.report.creases, input, dense, features.cell, mesh_junctions(dense.mesh));
-  else if (around == Surroundings::labels && input.bodies.size() > 1)
+  if (around == Surroundings::protected_labels) {
+    const ProjectionTree faces = body_faces(input, dense.mesh);
+    keep_visible(dense.report.creases, input, dense, features.cell, mesh_junctions(dense.mesh), &faces);
+  } else if (around == Surroundings::labels && input.bodies.size() > 1) {
     keep_visible(dense.report.creases, input, dense, features.cell, {});
+  }
   allow_for_chamfers(features.cell, dense.report);
 }
 

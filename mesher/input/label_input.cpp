@@ -140,6 +140,7 @@ LabelInput make_label_input(std::unique_ptr<const LabelSource> source, const std
   set_grid(grid, file, result);
   result.materials = name_materials(choice, read.counts);
   result.regions = std::move(read.regions);
+  result.largest_label = read.largest;
   if (progress) progress->throw_if_stopped();
 
   prepare_regions(result, choice.min_voxels,

@@ -2,6 +2,7 @@
 #include "mesher/input/label_regions.h"
 
 #include <algorithm>
+#include <limits>
 #include <mutex>
 #include <numeric>
 #include <set>
@@ -70,6 +71,7 @@ class Numbering {
   }
   const std::vector<std::uint64_t>& counts() const { return counts_; }  ///< by number
   const Labels& smallest() const { return smallest_; }
+  MaterialTag largest() const { return largest_; }  ///< of the labels that were read
 
  private:
   void number_row(const MaterialTag* labels, std::size_t width, LabelNumbers& all, RegionIndex* out) {
@@ -87,6 +89,7 @@ class Numbering {
     if (numbers_.size() > 2 * InputTuning::Limits::max_materials) numbers_.clear();
     smallest_.insert(label);
     keep_smallest(smallest_);
+    largest_ = std::max(largest_, label);
     const RegionIndex n = all.number(label);
     if (n >= counts_.size()) counts_.resize(n + std::size_t{1}, 0);
     return numbers_[label] = n;
@@ -96,6 +99,7 @@ class Numbering {
   std::unordered_map<MaterialTag, RegionIndex> numbers_;
   std::vector<std::uint64_t> counts_ = {0};
   Labels smallest_;
+  MaterialTag largest_ = std::numeric_limits<MaterialTag>::min();
 };
 
 }  // namespace
@@ -116,7 +120,7 @@ LabelRegions read_regions(const LabelSource& source, const std::string& file,
                                static_cast<double>(boxes.workers(std::min(size[2], depth))) *
                                    (static_cast<double>(source.decoding_bytes()) +
                                     static_cast<double>(boxes.voxels()) * sizeof(MaterialTag));
-  LabelRegions result{RegionGrid(size), {}, {}};
+  LabelRegions result{RegionGrid(size), {}, {}, std::numeric_limits<MaterialTag>::min()};
   const auto require = [&] {
     require_memory(static_cast<double>(result.regions.bytes()) + source_bytes + reading_bytes,
                    "the labels of " + file, "crop the volume or make it coarser");
@@ -156,6 +160,7 @@ LabelRegions read_regions(const LabelSource& source, const std::string& file,
   for (const Numbering& thread : threads) {
     for (std::size_t n = 0; n < thread.counts().size(); ++n) counts[n] += thread.counts()[n];
     smallest.insert(thread.smallest().begin(), thread.smallest().end());
+    result.largest = std::max(result.largest, thread.largest());
   }
   keep_smallest(smallest);
   result.smallest.assign(smallest.begin(), smallest.end());

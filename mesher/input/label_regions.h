@@ -20,6 +20,7 @@ struct LabelRegions {
   /// The smallest labels that occur, ascending: at least one more than messages list, beside the outside
   /// label.
   std::vector<MaterialTag> smallest;
+  MaterialTag largest = 0;  ///< label that occurs
 };
 
 /// Reads a volume by layers of whole blocks and numbers its labels. Beside the result and a layer, which

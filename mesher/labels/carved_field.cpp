@@ -28,6 +28,7 @@ struct CarvedField::Rules {
   std::vector<std::uint8_t> is_protected;            ///< by region of the volume; empty: none is
   std::vector<LeafOrigin> near_bodies;               ///< leaves with distances of bodies, ascending
   double layer = 0;                                  ///< voxels of the frame
+  unsigned crossed = 0;                              ///< sides of the volume that bodies cross
 };
 
 class CarvedField::Sampler final : public FieldSampler {
@@ -40,6 +41,7 @@ class CarvedField::Sampler final : public FieldSampler {
         bodies_(std::move(bodies)),
         first_body_(static_cast<RegionIndex>(field.labels_->regions().size() - 1)),
         band_(static_cast<float>(field.band())),
+        volume_(field.frame().volume()),
         per_voxel_(std::ldexp(1, field.refinement())),
         layer_(rules_.layer * per_voxel_),
         far_inside_(LabelTuning::Carving::far_share * field.bodies_->band()),
@@ -68,10 +70,12 @@ class CarvedField::Sampler final : public FieldSampler {
         return std::max(distances[0], -protection);
       }
       // Inside a body only protected labels are across an interface.
-      const float base = is_protected(r) ? -std::fabs(depth) : depth;
+      const float base = is_protected_at(point, r) ? -std::fabs(depth) : depth;
       if (r == label.region) return base;
-      const RegionIndex both[2] = {r, label.region};
-      labels_->values(place, both, distances);
+      // The layer is for labels that bodies carve.
+      const bool here = is_protected(r) && place != point;
+      const RegionIndex both[2] = {r, here ? labels_->nearest(point).region : label.region};
+      labels_->values(here ? point : place, both, distances);
       return base + (distances[0] - distances[1]);
     };
     const float middle = value_of(nearest.region) + nearest.margin;
@@ -84,7 +88,7 @@ class CarvedField::Sampler final : public FieldSampler {
     const NearestRegion body = bodies_->nearest(point);
     const Vec3 place = label_place(point, body);
     const NearestRegion label = labels_->nearest(place);
-    if (is_protected(label.region)) return two_nearest_protected(point, label);
+    if (is_protected_at(point, label.region)) return two_nearest_protected(point, label);
     std::optional<RegionSet> of_bodies = bodies_->two_nearest(point);
     if (of_bodies && of_bodies->contains(outside_region))
       of_bodies = replaced(*of_bodies, label.region);
@@ -122,24 +126,39 @@ class CarvedField::Sampler final : public FieldSampler {
   };
 
   /// The point whose label counts: in a layer around bodies, and inside them, that on the outer side of the
-  /// layer, along the normal.
+  /// layer, along the normal. Beside protected labels there is no layer.
   /// \param body the nearest region of the bodies at `point`
   Vec3 label_place(const Vec3& point, const NearestRegion& body) {
     along_ = Vec3::Zero();
     const bool inside = body.region != outside_region;
-    if (!rules_.of_protected.empty() || body.margin >= (inside ? far_inside_ : layer_)) return point;
+    if (body.margin >= (inside ? far_inside_ : layer_)) return point;
+    const bool any_protected = !rules_.of_protected.empty();
+    double layer = layer_;
+    if (any_protected) {
+      using Carving = LabelTuning::Carving;
+      const double share = (from_protected(point) / layer_ - Carving::without_layer) /
+                           (Carving::with_layer - Carving::without_layer);
+      if (!(share > 0)) return point;
+      layer *= std::min(share, 1.0);
+    }
     const RegionIndex outside = outside_region;
     double value;
     Vec3 slope;
     bodies_->values_and_gradients(point, {&outside, 1}, &value, &slope);
     const double length = slope.norm();
-    if (!(length > 0) || layer_ + value <= 0) return point;
-    along_ = slope / length;
-    return point - (layer_ + value) * along_;
+    if (!(length > 0) || layer + value <= 0) return point;
+    const Vec3 along = slope / length, place = point - (layer + value) * along;
+    if (any_protected && is_protected(labels_->nearest(place).region)) return point;
+    along_ = along;
+    return place;
   }
 
   bool is_protected(RegionIndex label) const {
     return !rules_.is_protected.empty() && rules_.is_protected[label] != 0;
+  }
+  /// Beyond the border protected labels do not hold bodies back.
+  bool is_protected_at(const Vec3& point, RegionIndex label) const {
+    return is_protected(label) && beyond(point) <= 0;
   }
   static RegionSet pair(RegionIndex a, RegionIndex b) {
     RegionSet both;
@@ -156,21 +175,40 @@ class CarvedField::Sampler final : public FieldSampler {
     return pair(both[0], both[1]);
   }
   NearestRegion nearest_of(const NearestRegion& body, const NearestRegion& label, const Vec3& point) {
-    if (is_protected(label.region)) return {label.region, std::min(label.margin, band_)};
+    if (is_protected_at(point, label.region)) {
+      if (body.region == outside_region) return {label.region, std::min(label.margin, band_)};
+      return {label.region, std::min({label.margin, static_cast<float>(-beyond(point)), band_})};
+    }
     if (body.region == outside_region) return {label.region, std::min({label.margin, body.margin, band_})};
     float margin = std::min(body.margin, band_);
     if (!rules_.of_protected.empty()) margin = std::min(margin, from_protected(point));
     return {static_cast<RegionIndex>(first_body_ + body.region), margin};
   }
+  /// How far a point is beyond the border on the sides that bodies cross, lattice units; negative inside.
+  /// \param slope receives the derivative, may be null
+  double beyond(const Vec3& point, Vec3* slope = nullptr) const {
+    double farthest = -HUGE_VAL;
+    for (int a = 0; a < 3; ++a)
+      for (const bool upper : {false, true}) {
+        if (!(rules_.crossed >> (2 * a + upper) & 1)) continue;
+        const double off = upper ? point[a] - volume_.high[a] : volume_.low[a] - point[a];
+        if (off <= farthest) continue;
+        farthest = off;
+        if (slope) *slope = upper ? Vec3::Unit(a) : Vec3(-Vec3::Unit(a));
+      }
+    return farthest;
+  }
   /// In a protected label, whose neighbour inside a body is the body.
   std::optional<RegionSet> two_nearest_protected(const Vec3& point, const NearestRegion& label) {
     std::optional<RegionSet> both = labels_->two_nearest(point);
+    const NearestRegion body = bodies_->nearest(point);
+    if (body.region != outside_region && -beyond(point) < std::min(label.margin, band_))
+      return pair(label.region, static_cast<RegionIndex>(first_body_ + body.region));
     if (!both) return both;
     RegionIndex across = label.region;
     for (const RegionIndex r : *both)
       if (r != label.region) across = r;
     if (is_protected(across)) return both;
-    const NearestRegion body = bodies_->nearest(point);
     if (body.region == outside_region) return both;
     return pair(label.region, static_cast<RegionIndex>(first_body_ + body.region));
   }
@@ -185,7 +223,8 @@ class CarvedField::Sampler final : public FieldSampler {
       return *smallest;
     };
     const float others = smallest_of(rules_.of_others, nearest_other_);
-    return 0.5f * (smallest_of(rules_.of_protected, nearest_protected_) - others);
+    const float distance = 0.5f * (smallest_of(rules_.of_protected, nearest_protected_) - others);
+    return std::max(distance, static_cast<float>(beyond(point)));
   }
   /// Values but for a common term.
   void values_and_gradients(const Vec3& point, std::span<const RegionIndex> regions, double* out,
@@ -204,17 +243,18 @@ class CarvedField::Sampler final : public FieldSampler {
         bodies_->values_and_gradients(point, {&body, 1}, out, slopes);
         if (-protection.value > *out) *out = -protection.value, *slopes = -protection.slope;
       } else {
-        const double sign = is_protected(r) && depth.value > 0 ? -1 : 1;
+        const double sign = is_protected_at(point, r) && depth.value > 0 ? -1 : 1;
         *out = sign * depth.value;
         *slopes = sign * depth.slope;
         if (r != label) {
-          const RegionIndex both[2] = {r, label};
+          const bool here = is_protected(r) && place != point;
+          const RegionIndex both[2] = {r, here ? labels_->nearest(point).region : label};
           double values[2];
           Vec3 of_labels[2];
-          labels_->values_and_gradients(place, both, values, of_labels);
+          labels_->values_and_gradients(here ? point : place, both, values, of_labels);
           const Vec3 slope = of_labels[0] - of_labels[1];
           *out += values[0] - values[1];
-          *slopes += slope - slope.dot(along) * along;
+          *slopes += here ? slope : Vec3(slope - slope.dot(along) * along);
         }
       }
       ++out;
@@ -234,13 +274,17 @@ class CarvedField::Sampler final : public FieldSampler {
     double values[2];
     Vec3 slopes[2];
     labels_->values_and_gradients(point, both, values, slopes);
-    return {0.5 * (values[0] - values[1]), 0.5 * (slopes[0] - slopes[1])};
+    const Signed inside{0.5 * (values[0] - values[1]), 0.5 * (slopes[0] - slopes[1])};
+    Signed outside;
+    outside.value = beyond(point, &outside.slope);
+    return outside.value > inside.value ? outside : inside;
   }
 
   const Rules& rules_;
   const std::unique_ptr<FieldSampler> labels_, bodies_;
   const RegionIndex first_body_;  ///< the region before the first body's
   const float band_;              ///< lattice units
+  const CellBox volume_;          ///< lattice units
   const double per_voxel_;        ///< lattice units
   const double layer_;            ///< around bodies, lattice units
   const double far_inside_;       ///< from the surfaces, lattice units
@@ -252,13 +296,15 @@ class CarvedField::Sampler final : public FieldSampler {
 
 std::shared_ptr<const CarvedField> CarvedField::make(std::shared_ptr<const LabelField> labels,
                                                      std::shared_ptr<const MaterialField> bodies,
-                                                     std::vector<std::uint8_t> is_protected, double layer) {
+                                                     std::vector<std::uint8_t> is_protected, double layer,
+                                                     unsigned crossed) {
   auto rules = std::make_shared<Rules>();
   if (std::find(is_protected.begin(), is_protected.end(), 1) == is_protected.end()) is_protected.clear();
   for (std::size_t r = 0; r < is_protected.size(); ++r)
     (is_protected[r] ? rules->of_protected : rules->of_others).push_back(static_cast<RegionIndex>(r));
   rules->is_protected = std::move(is_protected);
   rules->layer = layer;
+  rules->crossed = crossed;
   rules->near_bodies = bodies->band_leaves(outside_region);
   return std::shared_ptr<const CarvedField>(
       new CarvedField(std::move(labels), std::move(bodies), std::move(rules)));
@@ -329,12 +375,41 @@ std::vector<LeafOrigin> CarvedField::band_leaves(RegionIndex region) const {
   return leaves;
 }
 
-bool CarvedField::is_certain(const Vec3& point) const {
+std::optional<Vec3> CarvedField::project(const Vec3& point, MaterialOrOutside first, MaterialOrOutside second,
+                                         double max_distance) const {
+  if (first.has_value() != second.has_value() && crosses_border(first ? *first : *second))
+    return bodies_->project(point, first, second, max_distance);
+  return MaterialField::project(point, first, second, max_distance);
+}
+
+bool CarvedField::is_near_bodies(const Vec3& point) const {
   const Vec3 at = std::ldexp(1, -refinement()) * point;
   LeafOrigin leaf;
   for (int a = 0; a < 3; ++a) leaf[a] = static_cast<int>(std::floor(at[a] / leaf_side)) * leaf_side;
-  if (std::binary_search(rules_->near_bodies.begin(), rules_->near_bodies.end(), leaf)) return false;
-  return labels_->volume()->is_certain(point);
+  return std::binary_search(rules_->near_bodies.begin(), rules_->near_bodies.end(), leaf);
+}
+
+bool CarvedField::is_certain(const Vec3& point) const {
+  return !is_near_bodies(point) && labels_->volume()->is_certain(point);
+}
+
+bool CarvedField::leaves_out(RegionIndex region, const Vec3& point) const {
+  const unsigned sides = sides_beyond(point, frame().volume());
+  // A body with a face in a side that none crosses continues there, see continued_beyond().
+  return region < labels_->regions().size() ? sides != 0 : (sides & ~rules_->crossed) != 0;
+}
+
+bool CarvedField::is_far_beyond(const Vec3& point) const {
+  const CellBox volume = frame().volume();
+  const double far = std::ldexp(LabelTuning::Carving::far_beyond, refinement());
+  for (int a = 0; a < 3; ++a)
+    if (point[a] < volume.low[a] - far || point[a] > volume.high[a] + far) return !is_near_bodies(point);
+  return false;
+}
+
+bool CarvedField::crosses_border(MaterialTag material) const {
+  const auto is_it = [&](const FieldRegion& r) { return r.tag == material; };
+  return rules_->crossed != 0 && std::any_of(bodies_->regions().begin() + 1, bodies_->regions().end(), is_it);
 }
 
 }  // namespace tetwright

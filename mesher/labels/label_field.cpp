@@ -92,12 +92,15 @@ std::shared_ptr<const LabelField> LabelField::make(const LabelInput& labels, con
   made->voxel = voxel_size(labels);
   made->min_slope = made->voxel / labels.directions.colwise().norm().maxCoeff();
   if (labels.image) made->min_slope *= ImageTuning::min_slope;
-  for (int a = 0; a < 3; ++a) made->voxels_per_cell[a] = static_cast<double>(labels.size[a]) / frame.box[a];
+  const CellBox volume = frame.volume();
+  for (int a = 0; a < 3; ++a)
+    made->voxels_per_cell[a] = static_cast<double>(labels.size[a]) / (volume.high[a] - volume.low[a]);
   made->first_node = Vec3::Constant(padding - 0.5);
   if (is_mirrored(labels)) {
     made->voxels_per_cell[2] = -made->voxels_per_cell[2];
     made->first_node[2] += labels.size[2];
   }
+  for (int a = 0; a < 3; ++a) made->first_node[a] -= volume.low[a] * made->voxels_per_cell[a];
   if (needs_depths(labels, frame.cell_size)) made->depths = distance_transform(labels);
   std::vector<FieldRegion> regions{{keep_outside ? outside_name : "", outside_tag}};
   for (const LabelMaterial& m : labels.materials) regions.push_back({m.name, m.tag});
@@ -369,9 +372,10 @@ std::vector<MortonKey> LabelField::interface_voxels() const {
 }
 
 bool LabelField::is_at_border(const std::array<int, 3>& brick) const {
+  const CellBox volume = voxels().volume();
   for (int a = 0; a < 3; ++a) {
-    const double from = shared_->first_node[a];
-    for (const double border : {from, from + voxels().box[a] * shared_->voxels_per_cell[a]})
+    const auto node = [&](int cell) { return shared_->first_node[a] + cell * shared_->voxels_per_cell[a]; };
+    for (const double border : {node(volume.low[a]), node(volume.high[a])})
       if (brick[a] * brick_cells <= border && border <= (brick[a] + 1) * brick_cells) return true;
   }
   return false;

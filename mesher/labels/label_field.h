@@ -33,7 +33,7 @@ bool needs_depths(const LabelInput& labels, double cell_size);
 /// centres, each with only the labels near it.
 class LabelField final : public MaterialField, private VoxelVolume {
  public:
-  /// \param frame from label_frame()
+  /// \param frame from label_frame(), or a continued one
   /// \param keep_outside region 0 has the outside's name
   /// \throws InputError and Interrupted as make_label_bricks() does
   static std::shared_ptr<const LabelField> make(const LabelInput& labels, const GridFrame& frame,

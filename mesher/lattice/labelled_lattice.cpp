@@ -158,6 +158,7 @@ LabelledLattice label_lattice(LatticePoints points, std::vector<NearestRegion> n
   lattice.positions = std::move(points.positions);
   lattice.is_centre = std::move(points.is_centre);
   lattice.box = points.box;
+  lattice.border = points.border;
   points = {};
   const std::size_t count = lattice.positions.size();
   std::vector<RegionIndex>& regions = lattice.first_region;

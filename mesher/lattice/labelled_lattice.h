@@ -38,9 +38,17 @@ class LabelledLattice {
   bool keep_outside = false;
   bool has_rims = false;     ///< see mark_rims()
   std::array<int, 3> box{};  ///< lattice units
+  CellBox border{};          ///< of a volume, see GridFrame
 
   /// The faces of the box that a point is on, see tetwright::box_faces().
   unsigned box_faces(Index p) const { return tetwright::box_faces(positions[p], box); }
+
+  /// The planes that a point stays on: bits of box_faces(), and from bit 6 on those of the border of a
+  /// volume.
+  unsigned held_planes(Index p) const {
+    const unsigned faces = box_faces(p);
+    return border == CellBox{} ? faces : faces | side_planes(positions[p], border) << 6;
+  }
 
   /// Whether a tet belongs to the brick to be meshed.
   bool owns(std::size_t tet) const { return owned.empty() || owned[tet]; }

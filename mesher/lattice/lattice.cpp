@@ -45,10 +45,12 @@ HalfCells face_centre(const LeafBox& box, int axis, bool upper) {
   return p;
 }
 
-/// True if the lower or upper face normal to `axis` is on the window.
-bool on_window(const Octree& octree, const LeafBox& box, int axis, bool upper) {
-  return upper ? box.low[axis] + box.side == 2 * octree.window.high[axis]
-               : box.low[axis] == 2 * octree.window.low[axis];
+/// True if the lower or upper face normal to `axis` is on the window, or on the border of a volume.
+bool has_centre(const Octree& octree, const LeafBox& box, int axis, bool upper) {
+  const int at = box.low[axis] + (upper ? box.side : 0);
+  if (at == 2 * (upper ? octree.window.high : octree.window.low)[axis]) return true;
+  return octree.border != CellBox{} &&
+         (at == 2 * octree.border.low[axis] || at == 2 * octree.border.high[axis]);
 }
 
 HalfCells middle(const HalfCells& a, const HalfCells& b) {
@@ -75,7 +77,7 @@ class TetEmitter {
   Index find(const HalfCells& p) const { return points_.find(morton_encode(p), centre_); }
 
   void face(int axis, bool upper) {
-    if (on_window(octree_, box_, axis, upper)) {
+    if (has_centre(octree_, box_, axis, upper)) {
       around(axis, upper, find(face_centre(box_, axis, upper)));
       return;
     }
@@ -161,7 +163,7 @@ LatticePoints lattice_points(const Octree& octree) {
           for (int k = 0; k < 8; ++k) out.push_back(morton_encode(box.corner(k)) << 1);
           for (int axis = 0; axis < 3; ++axis)
             for (bool upper : {false, true})
-              if (on_window(octree, box, axis, upper))
+              if (has_centre(octree, box, axis, upper))
                 out.push_back(morton_encode(face_centre(box, axis, upper)) << 1);
         }
         // Most duplicates are within a chunk; a quarter of the keys remains.
@@ -170,6 +172,7 @@ LatticePoints lattice_points(const Octree& octree) {
       });
   parallel_sort_unique(marked);
   points.box = octree.cells;
+  points.border = octree.border;
   points.keys = std::move(marked);
   points.positions.resize(points.size());
   points.is_centre.resize(points.size());

@@ -73,6 +73,38 @@ void append_cut_by_box(const std::array<int, 3>& box, const CellBox& window, int
   }
 }
 
+/// Appends the cells of a level through which a plane of the border of a volume passes.
+void append_cut_by_border(const CellBox& border, const CellBox& window, int level,
+                          std::vector<MortonKey>& out) {
+  for (int a = 0; a < 3; ++a)
+    for (const int plane : {border.low[a], border.high[a]}) {
+      if ((plane >> level) << level == plane) continue;
+      CellBox layer = at_level(window, level);
+      layer.low[a] = plane >> level;
+      layer.high[a] = layer.low[a] + 1;
+      for_each_at_side(layer, a, true, [&](const std::array<int, 3>& q) { out.push_back(morton_encode(q)); });
+    }
+}
+
+/// Adds the mirror images of cells of a level beside the planes of the border of a volume.
+void mirror_at_border(const CellBox& border, const CellBox& window, int level,
+                      std::vector<MortonKey>& cells) {
+  const CellBox around = at_level(window, level);
+  for (int a = 0; a < 3; ++a)
+    for (const int plane : {border.low[a], border.high[a]}) {
+      const int at = plane >> level;
+      if (at << level != plane) continue;
+      const std::size_t count = cells.size();
+      for (std::size_t i = 0; i < count; ++i) {
+        std::array<int, 3> cell = morton_decode(cells[i]);
+        if (cell[a] != at && cell[a] != at - 1) continue;
+        cell[a] = 2 * at - 1 - cell[a];
+        if (around.contains(cell)) cells.push_back(morton_encode(cell));
+      }
+    }
+  parallel_sort_unique(cells);
+}
+
 /// Appends the cells of a level at the sides of the window that are not sides of the grid.
 void append_at_open_sides(const std::array<int, 3>& grid, const CellBox& window, int level,
                           std::vector<MortonKey>& out) {
@@ -248,15 +280,18 @@ Octree build_octree(const MaterialField& field, const OctreeOptions& options,
                     std::vector<MortonKey> interface_voxels, const std::vector<std::vector<MortonKey>>& thin,
                     Progress* progress, const CellBox* part) {
   const GridFrame& frame = field.frame();
-  if (options.uniform)
-    return build_octree(frame.cells, 0,
-                        [](int, const std::vector<MortonKey>&) { return std::vector<MortonKey>(); });
+  if (options.uniform) {
+    Octree whole = build_octree(frame.cells, 0,
+                                [](int, const std::vector<MortonKey>&) { return std::vector<MortonKey>(); });
+    whole.border = frame.border;
+    return whole;
+  }
 
   const CellBox window = part ? *part : CellBox{{0, 0, 0}, frame.cells};
   const int voxel_level = field.refinement();
   // Cells of the current level that contain an interface.
   std::vector<MortonKey> holding = std::move(interface_voxels);
-  const auto split = [&](int level, const SplitCells& already) {
+  const auto cells_to_split = [&](int level, const SplitCells& already) {
     if (progress) {
       progress->throw_if_stopped();
       progress->update(static_cast<double>(level) / (frame.root_level + 1));
@@ -264,6 +299,7 @@ Octree build_octree(const MaterialField& field, const OctreeOptions& options,
     const auto place = static_cast<std::size_t>(level);
     std::vector<MortonKey> sheets = place < thin.size() ? thin[place] : std::vector<MortonKey>();
     append_cut_by_box(frame.box, window, level, sheets);
+    if (frame.continues()) append_cut_by_border(frame.border, window, level, sheets);
     const auto both = [&](std::vector<MortonKey> cells) {
       if (!part) return SplitCells{std::move(cells), {}};
       return SplitCells{cells, cells};
@@ -312,8 +348,17 @@ Octree build_octree(const MaterialField& field, const OctreeOptions& options,
     }
     return asked;
   };
+  const auto split = [&](int level, const SplitCells& already) {
+    SplitCells asked = cells_to_split(level, already);
+    if (frame.continues()) {
+      asked.surely.insert(asked.surely.end(), already.surely.begin(), already.surely.end());
+      mirror_at_border(frame.border, window, level, asked.surely);
+    }
+    return asked;
+  };
   Octree octree = sweep(frame.cells, window, frame.root_level, split);
   cut_off_at_box(octree, frame.box);
+  octree.border = frame.border;
   return octree;
 }
 

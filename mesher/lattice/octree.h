@@ -30,6 +30,7 @@ struct Octree {
   /// Leaves of `packed` that cells beyond the window might split, ascending: all others in the window
   /// are leaves of the whole box's octree.
   std::vector<std::uint64_t> uncertain;
+  CellBox border{};  ///< see GridFrame; leaves on both sides of its planes are mirror images of each other
 
   std::size_t size() const { return packed.size(); }
   Leaf leaf(std::size_t i) const { return {packed[i] >> 5, static_cast<int>(packed[i] & 31)}; }

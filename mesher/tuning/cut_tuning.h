@@ -33,6 +33,8 @@ struct CutTuning {
     /// 0.41 of Labelle & Shewchuk 2007, points snap onto flat patches from both sides and tets would be
     /// inverted.
     static constexpr double near_long = 0.35, near_short = 0.49;
+    /// A point in the border of a volume with a cut this close, likewise, is on the interface: rounding.
+    static constexpr double is_there = 1e-3;
     /// Number of steps per edge in which distances are compared, because all points along a flat face have
     /// nearly the same distance. Must fit in a byte.
     static constexpr double distance_steps = 32;
@@ -212,6 +214,16 @@ struct CutTuning {
     static constexpr int max_own_halvings = 3;
     /// Points within this distance of their target, cells, have arrived: allows for rounding.
     static constexpr double arrived = 1e-12;
+    /// Points within this distance of a plane of the border of a volume, cells, are in it: rounding, as
+    /// DomainTuning::Frames::share_of_rounding permits it.
+    static constexpr double in_border = 0x1p-20;
+    /// Such points go to their patch or crease and back into the plane at most this often, until they move
+    /// by less than the second distance, cells: enough where both meet at 35 degrees or more.
+    static constexpr int border_steps = 60;
+    static constexpr double border_arrived = 1e-7;
+    /// Max distance of these targets from the patch or crease, cells: LabelTuning::Border::slack in the
+    /// smallest cells beside bodies.
+    static constexpr double border_slack = 0.05;
   };
 
   /// Points that hold each other back and are moved to their targets together.

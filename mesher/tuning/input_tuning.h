@@ -173,16 +173,6 @@ struct InputTuning {
     static constexpr double same_grid = 1e-3;
   };
 
-  /// Bodies in a segmented volume.
-  struct Implants {
-    /// Distance of bodies from the volume's border below which voxels are added, and distance after that,
-    /// voxels: cells are at most two voxels large (CellTuning::LabelCells::max_with_bodies), and distances
-    /// are known three cells away from surfaces.
-    static constexpr double min_room = 2, room = 8;
-    /// Max factor by which voxels are added: larger ones are mistaken units rather than long leads.
-    static constexpr double max_growth = 8;
-  };
-
   /// Max number of labels named in messages: enough to recognise a table of labels, few enough to read.
   struct Messages {
     static constexpr std::size_t max_listed_labels = 30;  ///< in one message

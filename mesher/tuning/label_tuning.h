@@ -86,11 +86,37 @@ struct LabelTuning {
     /// Samples along each edge of a voxel that a surface passes: errors of single voxels of up to 1/8 are
     /// independent, so that those of volumes are far below the 1 % that is compared.
     static constexpr int samples = 4;
+    /// Max length of the parts into which voxels are divided, cells: half the diagonal of a part and the next
+    /// number are less than the band, within which distances are known.
+    static constexpr double max_part = 1.2;
+    /// Distance from a surface, cells, from which on distances tell the side: they round off edges.
+    static constexpr double uncertain = 0.75;
     /// Thickness of the layer in which interfaces of labels turn towards bodies: in cells of the coarsest
     /// body, and at most in voxels.
     static constexpr double layer = 1, max_layer = 0.25;
     /// Share of the band from which on a point is far from surfaces.
     static constexpr double far_share = 0.98;
+    /// Distances from protected labels, in layers, between which the layer grows from nothing to its
+    /// thickness. The second is less than a voxel, since distances of labels are clamped to two, and those
+    /// from protected ones to half of it where two others meet.
+    static constexpr double without_layer = 1.5, with_layer = 3.5;
+    /// Distance from the border of the volume, voxels of the frame, from which on labels beyond it are left
+    /// out before points move: more than moves depend on.
+    static constexpr double far_beyond = 4;
+  };
+
+  /// The border of a volume with bodies.
+  struct Border {
+    /// Cells between bodies and the end of the lattice below which it continues beyond the border, and then
+    /// at least: distances from surfaces reach three cells, and so do the faces of continued_beyond() and the
+    /// cells on their far side.
+    static constexpr double min_room = 4;
+    static constexpr int room = 8;
+    /// Cells by which bodies with a face in the border continue beyond it: more than distances reach.
+    static constexpr double continuation = 5;
+    /// Max distance from the border, voxels, of faces that count as lying in it: more than the rounding of
+    /// files in single precision, and less than anyone could tell.
+    static constexpr double slack = 0.02;
   };
 
   /// Distances at any point.

@@ -184,6 +184,8 @@ DenseMesh mesh_input(ImplantedVolume& volume, PrepareRun& run) {
         "--bricks and --scratch do not work with surfaces in a segmented volume; leave them out");
   if (target.tolerance && run.task == Task::mesh)
     throw UsageError("--tolerance of 'mesh' is for surfaces alone; leave it out");
+  if (cells.uniform && cells.max_refinement.value_or(0) > 0)
+    throw UsageError("--uniform has cells of one size; leave out --max-refinement, or --uniform");
   MesherOptions options = common_options(run);
   const MesherInput& bodies = volume.bodies;
   const double diagonal = (bodies.high - bodies.low).norm();
@@ -205,7 +207,10 @@ DenseMesh mesh_input(ImplantedVolume& volume, PrepareRun& run) {
   // Larger cells than two voxels are impossible beside bodies: then the memory does not suffice.
   if (choose) fit_memory(volume.labels, need, options, run);
   if (choose) options.voxel_size = std::min(options.voxel_size, 2 * default_cell_size(volume));
-  read_sizes(run, box_of_voxels(volume.labels.size, volume.labels.origin, volume.labels.directions));
+  Box3 box = box_of_voxels(volume.labels.size, volume.labels.origin, volume.labels.directions);
+  box.add(bodies.low);
+  box.add(bodies.high);
+  read_sizes(run, box);
   DenseMesh dense = mesh_implanted(volume, options, &run.progress);
   report_carving(*dense.report.carved, *run.report.volume);
   if (target.tolerance) run.report.tolerance = tolerance_of(*target.tolerance, diagonal_of(dense.mesh));

@@ -43,13 +43,14 @@ std::vector<MaterialTag> protected_tags(const LabelInput& labels, const LabelOpt
   return {tags.begin(), tags.end()};
 }
 
-/// Gives bodies tags that no label has: the next ones above those of the labels while there are any.
+/// Gives bodies tags that no label of the file has, also if it is not meshed: the next ones above them while
+/// there are any.
 void renumber(const LabelInput& labels, MesherInput& bodies) {
   std::set<MaterialTag> taken{outside_tag};
   for (const LabelMaterial& m : labels.materials) taken.insert(m.tag);
   constexpr MaterialTag max_tag = std::numeric_limits<MaterialTag>::max();
   const auto count = static_cast<MaterialTag>(bodies.bodies.size());
-  MaterialTag next = std::max(MaterialTag{0}, *taken.rbegin());
+  MaterialTag next = std::max({MaterialTag{0}, labels.largest_label, *taken.rbegin()});
   if (next > max_tag - count) next = 0;
   for (MesherInput::Body& body : bodies.bodies) {
     while (taken.contains(++next)) continue;
@@ -75,6 +76,8 @@ std::vector<Input> take_implants(std::vector<Input>& inputs, const Input* label_
 
 ImplantedVolume join_implants(LabelInput labels, MesherInput bodies, PrepareRun& run) {
   renumber(labels, bodies);
+  // A table of colours may name labels that do not occur.
+  for (const MesherInput::Body& body : bodies.bodies) run.report.material_colours.erase(body.tag);
   std::vector<MaterialTag> kept = protected_tags(labels, run.options.labels);
   const std::size_t known = bodies.findings.size();
   ImplantedVolume volume = make_implanted_volume(std::move(labels), std::move(bodies), std::move(kept));

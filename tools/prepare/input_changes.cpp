@@ -362,6 +362,18 @@ void find_small_parts(PrepareReport& report) {
              "'" + name +
              "' was not compared with its input: its surface is open, intersects itself or meets another, "
              "and cells of this size do not show it"});
+  for (const std::string& name : report.mesher->at_protected)
+    report.diagnostics.push_back(
+        {.code = DiagnosticCode::not_compared,
+         .what =
+             "'" + name +
+             "' was not compared with its surface: it meets labels of --protect-labels, to which it gives "
+             "way"});
+  for (const std::string& name : report.mesher->off_labels)
+    report.diagnostics.push_back({.code = DiagnosticCode::body_off_labels,
+                                  .what = "'" + name + "' is in no label of the volume, only outside",
+                                  .done = "meshed beside them; check its position and --surface-space if it "
+                                          "should carve labels"});
   for (const ThinPartReport& t : report.mesher->thin_parts) find_thin_part(t, report);
 }
 

@@ -120,8 +120,8 @@ InputKinds find_kinds(std::vector<Input>& inputs, const PrepareOptions& options)
     volume = true;
   }
   const LabelOptions& labels = options.labels;
-  check_volume_file(inputs, options.volume_file, volume);
   if (!volume) {
+    check_volume_file(inputs, options.volume_file, volume);
     if (options.values.own_label)
       throw UsageError(
           "--values-mask labels is for segmented volumes, and no input is one; give a volume, --values-mask "
@@ -145,6 +145,7 @@ InputKinds find_kinds(std::vector<Input>& inputs, const PrepareOptions& options)
     throw UsageError("--iso, --outside-probability and --smooth are for images, and " + label_file->name +
                      " holds labels");
   kinds.implants = take_implants(inputs, label_file);
+  check_volume_file(inputs, options.volume_file, volume);
   if (!kinds.implants.empty()) return kinds;
   check_body_options(options);
   if (options.bodies.overlap != OverlapRule::later && (vdb_labels || !are_masks(inputs)))

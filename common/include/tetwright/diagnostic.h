@@ -100,6 +100,7 @@ enum class DiagnosticCode : std::uint8_t {
   space_converted,
   space_unknown,
   volume_enlarged,
+  body_off_labels,
   surface_space_unknown,
   // Tet meshes.
   tet_points_merged,

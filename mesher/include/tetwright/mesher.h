@@ -153,6 +153,10 @@ struct MesherReport {
   /// Materials whose expected solid cannot be determined: the surfaces have a flaw, and cells were refined or
   /// all of the solid is smaller than a cell.
   std::vector<std::string> unknown;
+  /// Bodies in a segmented volume that meet protected labels, so that their expected solid is unknown.
+  std::vector<std::string> at_protected;
+  /// Bodies that are in no label of the volume around them.
+  std::vector<std::string> off_labels;
   std::vector<ExpectedSheet> sheets;    ///< inside bodies, as MesherInput::sheets
   std::vector<FeatureReport> features;  ///< of each surface, in their order
   CreaseCurves creases;                 ///< creases of all surfaces

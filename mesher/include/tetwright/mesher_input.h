@@ -416,6 +416,7 @@ struct LabelInput {
   /// Regions of the bands of `image`; on_interface for those without voxels.
   std::vector<RegionIndex> band_regions = {};
   std::vector<LabelMaterial> materials;  ///< by ascending tag
+  MaterialTag largest_label = 0;         ///< in the file, whether it is meshed or not
   std::vector<LostLabel> lost;           ///< by ascending tag
   std::size_t merged_islands = 0;        ///< including those of the outside
   std::size_t merged_voxels = 0;
@@ -456,12 +457,11 @@ struct ImplantedVolume {
   std::vector<MaterialTag> protected_labels;  ///< that bodies do not carve, ascending
 };
 
-/// Puts bodies into a segmented volume. Where a body comes within two voxels of the volume's border, outside
-/// voxels are added on that side, and a finding of `bodies` says so: bodies are never cut off.
+/// Puts bodies into a segmented volume. Bodies are never cut off: the mesh of one that crosses the volume's
+/// border continues beyond it, where labels and a kept outside end, and a finding of `bodies` says so.
 /// \throws UsageError for bodies with layers or sheets, names or tags that labels have, and a protected label
 ///   that does not exist
-/// \throws InputError for a body that does not meet the volume, for bodies so far outside that the volume
-///   would have more than eight times the voxels, and for an image whose border bodies reach
+/// \throws InputError for a body that does not meet the volume, and for more than 60,000 labels and bodies
 ImplantedVolume make_implanted_volume(LabelInput labels, MesherInput bodies,
                                       std::vector<MaterialTag> protected_labels = {});
 

@@ -141,29 +141,62 @@ TEST_F(Implants, BodiesLeaveTheVolumeWhole) {
   const std::string file = box("lead.stl", Vec3(8.2, 8.4, 6.1), Vec3(11.9, 11.7, 27.3));
   const Answer a = mesh(volume() + " --material lead=" + file + " --surface-space RAS");
   EXPECT_EQ(a.status, 0) << a.err;
-  EXPECT_NE(a.err.find("added around the volume"), std::string::npos) << a.err;
+  EXPECT_NE(a.err.find("1 body crosses its border"), std::string::npos) << a.err;
   EXPECT_NEAR(volumes().at("lead"), 3.7 * 3.3 * 21.2, 1e-4 * 3.7 * 3.3 * 21.2);
 }
 
-TEST_F(Implants, LabelsAtABorderThatIsEnlargedTouchTheOutside) {
+TEST_F(Implants, LabelsEndAtABorderThatABodyCrosses) {
   LabelVolume full;
   full.size = {12, 12, 12};
   full.labels.assign(12 * 12 * 12, 1);
   write_label_volume(full, folder_ / "full.nrrd");
   const std::string file = box("lead.stl", Vec3(4.2, 4.4, 4.1), Vec3(7.9, 7.7, 17.3));
-  const Answer a = mesh(folder_ / "full.nrrd --material lead=" + file);
+  const std::string words = (folder_ / "full.nrrd") + " --material lead=" + file;
+  const Answer a = mesh(words);
   EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_NEAR(volumes().at("label_1"), 12 * 12 * 12 - 3.7 * 3.3 * 7.4, 1e-4 * 12 * 12 * 12);
+  const Answer simplified = run("prepare " + words + " --target-tets 2500 -o " + (folder_ / "p.msh") +
+                                " --stats " + (folder_ / "s.json"));
+  EXPECT_EQ(simplified.status, 0) << simplified.err;
+  const TetMesh made = read_tet_mesh(folder_ / "p.msh").mesh;
+  double highest = -1;
+  for (std::size_t t = 0; t < made.tets.size(); ++t)
+    if (made.materials[t] == 1)
+      for (const Index p : made.tets[t]) highest = std::max(highest, made.points[p][2]);
+  EXPECT_NEAR(highest, 11.5, 1e-9);
+  std::set<std::string> groups;
+  for (const auto& [patch, group] : made.patch_groups) groups.insert(group.name);
+  EXPECT_TRUE(groups.contains("border_z_max"));
+}
+
+TEST_F(Implants, TagsAreThoseOfNoLabelOfTheFile) {
+  const Answer a = mesh(volume() + " --labels 3 --material implant=" + block() + " --surface-space RAS");
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_EQ(read_tet_mesh(folder_ / "out.vtu").mesh.material_names.at(8), "implant");
+}
+
+TEST_F(Implants, OthersThanThoseAtProtectedLabelsAreCompared) {
+  const std::string far = box("far.stl", Vec3(4.1, 4.3, 3.2), Vec3(6.6, 6.8, 5.7));
+  const std::string near = box("near.stl", Vec3(10.1, 10.3, 7.2), Vec3(13.6, 13.8, 12.7));
+  const Answer a = mesh(volume() + " --material far=" + far + " --material near=" + near +
+                        " --surface-space RAS --protect-labels 7");
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_NE(a.err.find("'near' was not compared"), std::string::npos) << a.err;
+  EXPECT_EQ(a.err.find("'far'"), std::string::npos) << a.err;
 }
 
 TEST_F(Implants, CallsThatDoNotFit) {
   const std::string labels = volume(), surface = block();
-  for (const auto& [words, message] : {std::pair(surface + " " + labels, "give volumes first"),
-                                       std::pair(labels + " " + surface + " --layer skin=1", "--layer"),
-                                       std::pair(labels + " " + surface + " --sheet s=" + surface, "--sheet"),
-                                       std::pair(labels + " --material label_3=" + surface, "both a label"),
-                                       std::pair(labels + " --protect-labels 3", "there is no surface"),
-                                       std::pair(surface + " --protect-labels 3", "no input is a volume"),
-                                       std::pair(labels + " " + surface + " --voxel-size 3", "two voxels")}) {
+  for (const auto& [words, message] :
+       {std::pair(surface + " " + labels, "give volumes first"),
+        std::pair(labels + " " + surface + " --layer skin=1", "--layer"),
+        std::pair(labels + " " + surface + " --sheet s=" + surface, "--sheet"),
+        std::pair(labels + " --material label_3=" + surface, "both a label"),
+        std::pair(labels + " --material outside=" + surface, "'outside'"),
+        std::pair(labels + " " + surface + " --uniform --max-refinement 2", "cells of one size"),
+        std::pair(labels + " --protect-labels 3", "there is no surface"),
+        std::pair(surface + " --protect-labels 3", "no input is a volume"),
+        std::pair(labels + " " + surface + " --voxel-size 3", "two voxels")}) {
     const Answer a = mesh(words);
     EXPECT_EQ(a.status, 2) << words;
     EXPECT_NE(a.err.find(message), std::string::npos) << a.err;
