@@ -41,7 +41,7 @@ FeatureSurface::FeatureSurface(const MesherInput& input, const std::vector<Surfa
     add_complex(*complex, corner_reach, items);
   else
     add_bodies(input, patches, corner_reach, caps, items);
-  no_patch_ = static_cast<Patch>(groups_.size());
+  no_patch_ = surroundings_ ? Patch{0} : static_cast<Patch>(groups_.size());
   if (surroundings_)
     for (std::size_t b = 0; b < patches.size(); ++b)
       if (const RepairedSurface& surface = input.bodies[b].surface; patches[b].any())

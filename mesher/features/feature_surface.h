@@ -144,7 +144,8 @@ class FeatureSurface : public ReferenceSurface {
   /// \param min_facing smallest cosine between normals that are not opposite
   std::optional<Place> nearest(const Vec3& p, std::size_t sheet, double at_most, const Vec3* facing = nullptr,
                                double min_facing = CutTuning::Labelling::min_facing) const;
-  /// The patch of faces that lie on no surface; queries for it go to the field.
+  /// The patch of faces that lie on no surface, that of faces between labels if there are any; queries for it
+  /// go to the field.
   Patch no_patch() const { return no_patch_; }
   /// The closest point on one patch within `at_most`.
   std::optional<Place> nearest_of_patch(const Vec3& p, Patch patch, double at_most) const;

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "common/parallel/parallel_sort.h"
-#include "common/tolerances.h"
 #include "simplify/mesh/local_numbers.h"
 #include "simplify/tuning/tuning.h"
 #include "tetwright/resources.h"
@@ -48,7 +47,7 @@ SurfaceProjection::SurfaceProjection(const EditableMesh& mesh, std::span<const V
       has_sheets_(
           std::any_of(faces.begin(), faces.end(), [](const InterfaceFace& f) { return f.is_sheet(); })),
       given_patches_(has_patches_ && given),
-      has_labels_(given_patches_ && given->creased_size()),
+      has_labels_(given_patches_ && given->first_body_patch() != 0),
       given_(given),
       mesh_(&mesh) {
   if (!given_ || has_sheets_) {
@@ -128,17 +127,6 @@ bool SurfaceProjection::given_has_curve(const Vec3& p, const Vec3& q, bool junct
   const WorkingSpace& space = mesh_->space();
   const double reach = Projection::same_curve_share * (q - p).norm() / space.scale();
   return given_->onto_crease(space.to_input((p + q) / 2), reach).has_value();
-}
-
-bool SurfaceProjection::is_between_labels(const Vec3& p, const Vec3& q) const {
-  if (!has_labels_) return false;
-  const Vec3 middle = (p + q) / 2;
-  const auto own = curves_.nearest(middle, {}, (q - p).norm());
-  if (!own) return false;
-  const WorkingSpace& space = mesh_->space();
-  // Where both are the same curve, it counts as a crease.
-  const double reach = (*own - middle).norm() + tolerance::flat_patch;
-  return !given_->onto_crease(space.to_input(middle), reach / space.scale());
 }
 
 std::optional<Vec3> SurfaceProjection::onto_surface(const Vec3& p, RegionId first, RegionId second,

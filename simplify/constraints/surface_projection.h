@@ -56,9 +56,6 @@ class SurfaceProjection {
   /// `max_distance`.
   std::optional<Vec3> onto_surface(const Vec3& p, RegionId first, RegionId second, PatchId patch,
                                    double max_distance) const;
-  /// Whether an edge of a curve follows one in which labels around the bodies of the given surface meet, with
-  /// each other or with a body's face. Such curves are only as accurate as voxels.
-  bool is_between_labels(const Vec3& p, const Vec3& q) const;
   /// The nearest point of a junction curve within `max_distance`.
   std::optional<Vec3> onto_curve(const Vec3& p, double max_distance) const;
   /// The nearest point of a crease of the given surface within `max_distance`.

@@ -23,6 +23,7 @@ class CurveKinds {
   /// \param first_body_patch see ReferenceSurface
   void add(PatchId patch, PatchId first_body_patch) {
     Side& side = patch < first_body_patch ? labels_ : bodies_;
+    on_border_ |= patch != 0 && patch < first_body_patch;
     side.several |= side.count != 0 && side.patch != patch;
     side.patch = patch;
     ++side.count;
@@ -32,6 +33,8 @@ class CurveKinds {
     const unsigned count = labels_.count + bodies_.count;
     return labels_.several || (count != 0 && count != 2);
   }
+  /// Whether it follows voxels only: neither bodies nor the border of the volume say where it is exactly.
+  bool follows_voxels() const { return between_labels() && !on_crease() && !on_border_; }
 
  private:
   struct Side {
@@ -40,6 +43,7 @@ class CurveKinds {
     bool several = false;
   };
   Side labels_, bodies_;
+  bool on_border_ = false;
 };
 
 /// The closed star of a point with its interface triangles: a local copy, for memory locality.
@@ -109,7 +113,7 @@ struct Star {
   int dimension() const;
   /// The kinds of curves that the edges from the centre belong to, by link point.
   void find_curves(PatchId first_body_patch, std::vector<CurveKinds>& kinds) const;
-  /// Dimension of the centre if patches of bodies do not count.
+  /// Dimension of the centre if the patches of bodies are not told apart.
   /// \param kinds by find_curves()
   int dimension_among_labels(const std::vector<CurveKinds>& kinds) const;
   /// Dimension of the centre if only the faces of bodies count, 0 to 3.

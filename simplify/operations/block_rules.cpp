@@ -31,15 +31,14 @@ void BlockRules::project_onto(const SurfaceProjection& surfaces, double diagonal
   surface.projection = &surfaces;
   surface.max_feature_distance.reset();
   if (!surfaces.has_patches() && !surfaces.has_sheets()) return;
+  surface.max_label_distance = Features::max_segment_share * diagonal;
   const double distance =
       Features::max_segment_share * std::min(diagonal, surfaces.creased_size().value_or(diagonal));
   surface.max_feature_distance = std::min(distance, deviation.tolerance.value_or(distance));
 }
 
-bool near_crease(const BlockRules& rules, const Star& star, std::size_t first, const Vec3& to,
+bool near_crease(const BlockRules& rules, const Star& star, double asked, std::size_t first, const Vec3& to,
                  std::optional<std::size_t> second) {
-  if (rules.surface.projection->is_between_labels(star.positions[first], star.centre_position)) return true;
-  const double asked = *rules.surface.max_feature_distance;
   double bound = asked;
   const auto fits = [&] {
     return crease_distance(*rules.surface.projection, star.positions[first], to, bound) <= bound &&

@@ -79,6 +79,8 @@ struct SurfaceBounds {
   /// Max distance of a feature segment from the input's feature edges; a segment may keep the distance of
   /// those it replaces. std::nullopt: the mesh has neither patches nor sheets.
   std::optional<double> max_feature_distance;
+  /// As above for curves between labels around bodies, of which max_feature_distance is a share.
+  double max_label_distance = 0;
   /// Lets points of interfaces, junction curves and corners leave them by up to max_distance, or by their
   /// current distance if that is larger, if that improves the shapes (needs `projection`). Points where
   /// patches meet, and points of flat patches, never leave.
@@ -158,8 +160,9 @@ bool near_reference(const BlockRules& rules, const SurfaceGrid::Added& t, Region
 /// Whether the feature segments that end at the star's centre may be replaced by a segment from link point
 /// `first` to `to` and, if `second` is given, by another one from `to` to that link point. Link points are
 /// local numbers.
+/// \param asked max distance from the curves of the input, or that of the replaced segments if that is larger
 /// \pre rules.keeps_curves(star).
-bool near_crease(const BlockRules& rules, const Star& star, std::size_t first, const Vec3& to,
+bool near_crease(const BlockRules& rules, const Star& star, double asked, std::size_t first, const Vec3& to,
                  std::optional<std::size_t> second = {});
 
 /// Value of the objective for a tet.

@@ -53,8 +53,8 @@ bool surface_edit(Workspace& ws, const BlockRules& rules, std::size_t b) {
   SurfaceGrid::Edit& edit = ws.proposal.edit;
   edit.clear();
   if (rules.keeps_curves(star) && star.edge_dimension(b) == 1)
-    for (std::size_t p = 0; p < star.points.size(); ++p)
-      if (p != b && star.edge_dimension(p) == 1 && !near_crease(rules, star, p, star.positions[b]))
+    for (const std::size_t p : ws.bounded_curves(rules))
+      if (p != b && !near_crease(rules, star, ws.max_curve_distance(rules, p), p, star.positions[b]))
         return false;
   for (const Star::InterfaceTriangle& s : star.interface_triangles) {
     const Triangle ids{star.centre, star.points[s.first], star.points[s.second]};
@@ -170,7 +170,7 @@ Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b, bool c
     return Outcome::surface_error;
   if (!(rules.embedded && star.interface_triangles.empty()) &&
       !(ws.link_condition.holds(ws.mesh, ws.grid, star, b, rules.first_body_patch()) &&
-        (!crossing || ws.may_cross_at(b))))
+        (!crossing || ws.may_cross_at(rules, b))))
     return Outcome::link_condition;
   ws.proposal.edit.clear();
   if (!star.interface_triangles.empty()) {

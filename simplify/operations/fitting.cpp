@@ -67,8 +67,8 @@ Outcome fit_to_samples(Workspace& ws, const BlockRules& rules, float floor, Samp
   const SurfaceSamples* samples = ws.grid.samples();
   if (!samples || star.frozen || star.dimension() != 2) return Outcome::no_candidate;
   star.compute_gradients();
-  if (rules.keeps_patches(star) && is_flat(star)) return Outcome::no_candidate;
   if (is_in_flat_patch(star, rules)) return fit_to_patch(ws, rules, floor);
+  if (rules.keeps_patches(star) && is_flat(star)) return Outcome::no_candidate;
   SurfaceGrid::Edit& edit = ws.proposal.edit;
   edit.clear();
   const Vec3& c = star.centre_position;

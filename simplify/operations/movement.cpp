@@ -17,7 +17,9 @@ namespace {
 /// interface of its two regions nearby.
 bool surface_edit(Workspace& ws, const BlockRules& rules, const Vec3& to) {
   const Star& star = ws.star;
-  const bool by_point = rules.surface.leave_surface && star.dimension() < 2;
+  // Crossings slide along their crease without that test.
+  const bool crosses = rules.first_body_patch() != 0 && star.creases;
+  const bool by_point = rules.surface.leave_surface && star.dimension() < 2 && !crosses;
   SurfaceGrid::Edit& edit = ws.proposal.edit;
   for (const Star::InterfaceTriangle& s : star.interface_triangles) {
     const Triangle ids{star.centre, star.points[s.first], star.points[s.second]};
@@ -33,13 +35,14 @@ bool surface_edit(Workspace& ws, const BlockRules& rules, const Vec3& to) {
 bool stays_near_crease(Workspace& ws, const BlockRules& rules, const Vec3& to) {
   const Star& star = ws.star;
   if (!rules.keeps_curves(star)) return true;
-  std::vector<std::size_t>& ends = ws.curve_ends;
-  ends.clear();
-  for (std::size_t p = 0; p < star.points.size(); ++p)
-    if (star.edge_dimension(p) == 1) ends.push_back(p);
-  if (ends.size() == 2) return near_crease(rules, star, ends[0], to, ends[1]);
-  return std::all_of(ends.begin(), ends.end(),
-                     [&](std::size_t p) { return near_crease(rules, star, p, to); });
+  const std::vector<std::size_t>& ends = ws.bounded_curves(rules);
+  // Without labels around bodies only points of dimension 1 move, and corners onto those of the input.
+  if (rules.first_body_patch() == 0 || ends.size() == 2)
+    return ends.size() < 2 ||
+           near_crease(rules, star, ws.max_curve_distance(rules, ends[0]), ends[0], to, ends[1]);
+  return std::all_of(ends.begin(), ends.end(), [&](std::size_t p) {
+    return near_crease(rules, star, ws.max_curve_distance(rules, p), p, to);
+  });
 }
 
 }  // namespace
@@ -63,8 +66,8 @@ bool is_flat(const Star& star) {
 }
 
 bool is_in_flat_patch(const Star& star, const BlockRules& rules) {
-  return rules.has_patches() && star.dimension() == 2 &&
-         rules.surface.projection->is_flat(star.interface_triangles.front().patch);
+  return rules.first_body_patch() != 0 && !star.interface_triangles.empty() &&
+         rules.surface.projection->is_flat(star.interface_triangles.front().patch) && star.dimension() == 2;
 }
 
 Outcome rate(Star& star, const BlockRules& rules, const Vec3& to, float limit, std::vector<float>& qualities,

@@ -346,7 +346,8 @@ Outcome optimise(Workspace& ws, const BlockRules& rules) {
   const int dimension = star.dimension();
   if (star.frozen) return Outcome::material_rule;
   star.compute_gradients();
-  if (dimension == 0 && !may_leave(star, rules) && !ws.is_crossing(rules)) return Outcome::material_rule;
+  if (dimension == 0 && !may_leave(star, rules) && !(ws.is_crossing(rules) && ws.is_on_crease(rules)))
+    return Outcome::material_rule;
   Placement& place = ws.placement;
   if (!find_position(ws, rules, dimension, Smoothing::min_gain * star.worst, place)) return Outcome::quality;
   return move_to(ws, rules, place.position, place.qualities);

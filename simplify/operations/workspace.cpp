@@ -45,16 +45,18 @@ bool keeps_sizes(const Workspace& ws, const EdgeSizes& sizes) {
 
 }  // namespace
 
-Outcome Workspace::gather(Index point) {
-  const Outcome o = star.gather(mesh, point);
+Outcome Workspace::gather(Index point) { return gather(point, star); }
+
+Outcome Workspace::gather(Index point, Star& into) const {
+  const Outcome o = into.gather(mesh, point);
   if (o != Outcome::done || !mesh.interface_patches()) return o;
   bool inner = false;
-  for (Star::InterfaceTriangle& t : star.interface_triangles)
+  for (Star::InterfaceTriangle& t : into.interface_triangles)
     if (t.across != outside_id) {
-      t.patch = grid.patch(mesh, {star.centre, star.points[t.first], star.points[t.second]});
+      t.patch = grid.patch(mesh, {into.centre, into.points[t.first], into.points[t.second]});
       inner = true;
     }
-  if (inner) star.find_creases();
+  if (inner) into.find_creases();
   return o;
 }
 
@@ -82,20 +84,43 @@ Outcome Workspace::within_bounds(const BlockRules& rules, std::int64_t count_cha
   return rules.count.allow(mesh.live_tets(), count_change) ? Outcome::done : Outcome::count;
 }
 
-bool Workspace::is_on_crease(const BlockRules& rules) {
-  if (rules.first_body_patch() == 0 || star.interface_triangles.empty()) return false;
+const std::vector<std::size_t>& Workspace::bounded_curves(const BlockRules& rules) {
+  const bool among_labels = rules.first_body_patch() != 0;
+  if (among_labels) star.find_curves(rules.first_body_patch(), kinds);
+  curve_ends.clear();
+  for (std::size_t p = 0; p < star.points.size(); ++p)
+    if (star.edge_dimension(p) == 1 && !(among_labels && kinds[p].follows_voxels())) curve_ends.push_back(p);
+  return curve_ends;
+}
+
+double Workspace::max_curve_distance(const BlockRules& rules, std::size_t p) const {
+  return rules.first_body_patch() == 0 || kinds[p].on_crease() ? *rules.surface.max_feature_distance
+                                                               : rules.surface.max_label_distance;
+}
+
+bool Workspace::follows_one_crease(const BlockRules& rules) {
+  if (rules.first_body_patch() == 0 || !star.creases) return false;
   star.find_curves(rules.first_body_patch(), kinds);
   return star.dimension_on_bodies(rules.first_body_patch(), kinds) == 1;
 }
 
-bool Workspace::is_crossing(const BlockRules& rules) {
-  return !star.frozen && is_on_crease(rules) && star.dimension_among_labels(kinds) == 1;
+bool Workspace::is_on_crease(const BlockRules& rules) {
+  // Contacts of bodies lie between labels as well; the given surface may not have them.
+  return follows_one_crease(rules) &&
+         std::any_of(kinds.begin(), kinds.end(),
+                     [](const CurveKinds& k) { return k.on_crease() && !k.between_labels(); }) &&
+         !rules.surface.projection->lacks_creases(star.centre_position);
 }
 
-bool Workspace::may_cross_at(std::size_t b) {
+bool Workspace::is_crossing(const BlockRules& rules) {
+  return !star.frozen && follows_one_crease(rules) && star.dimension_among_labels(kinds) == 1;
+}
+
+bool Workspace::may_cross_at(const BlockRules& rules, std::size_t b) {
   if (kinds[b].between_labels()) return true;
-  // Without the patches of interface faces.
-  return target_star.gather(mesh, star.points[b]) == Outcome::done && target_star.dimension() == 2;
+  if (gather(star.points[b], target_star) != Outcome::done) return false;
+  target_star.find_curves(rules.first_body_patch(), target_kinds);
+  return target_star.dimension_among_labels(target_kinds) == 2;
 }
 
 }  // namespace tetwright

@@ -65,8 +65,8 @@ struct Workspace {
   // Scratch memory of single operations.
   std::vector<float> qualities;                     ///< smoothing and collapse: qualities of the star's tets
   std::vector<CollapseTarget> targets;              ///< collapse
-  std::vector<std::size_t> curve_ends;              ///< movement: ends of the star's edges on curves
-  std::vector<CurveKinds> kinds;                    ///< of the star's edges
+  std::vector<std::size_t> curve_ends;              ///< bounded_curves()
+  std::vector<CurveKinds> kinds, target_kinds;      ///< of the edges of the stars
   std::array<std::vector<Index>, 2> chains;         ///< edge removal: points around the edge, by region
   std::array<RingTriangulation, 2> triangulations;  ///< edge removal
   std::vector<float> current, trial;                ///< smoothing: values of the star's tets
@@ -98,16 +98,27 @@ struct Workspace {
   ///
   /// \return done, volume, self_intersection, edge_length or count.
   Outcome within_bounds(const BlockRules& rules, std::int64_t count_change);
-  /// Whether the star's centre is on a crease of a body among labels, and neither an end nor a branch of it.
-  /// Fills `kinds`.
+  /// The ends of the star's edges of dimension 1 that stay near the curves of the input. Among labels of a
+  /// volume, curves that follow voxels need not.
+  const std::vector<std::size_t>& bounded_curves(const BlockRules& rules);
+  /// How far the segment that replaces the edge to link point p may be from those curves.
+  /// \pre p is one of bounded_curves()
+  double max_curve_distance(const BlockRules& rules, std::size_t p) const;
+  /// Whether the star's centre is on a crease of a body among labels, neither an end nor a branch of it, and
+  /// the given surface has the crease. Fills `kinds`.
   bool is_on_crease(const BlockRules& rules);
-  /// Whether one curve between labels meets that crease at the star's centre, which may then move along the
-  /// crease: voxels do not say exactly where it is. Fills `kinds`.
+  /// Whether one curve between labels meets one crease of a body at the star's centre, in a point or in a
+  /// common edge. Such a point may move along the crease: voxels do not say exactly where it is. Fills
+  /// `kinds`.
   bool is_crossing(const BlockRules& rules);
   /// Whether the crossing at the star's centre may move to link point b on its crease: if curves between
   /// labels do not lead there, b must lie within a single interface of them.
   /// \pre is_crossing()
-  bool may_cross_at(std::size_t b);
+  bool may_cross_at(const BlockRules& rules, std::size_t b);
+
+ private:
+  Outcome gather(Index point, Star& into) const;
+  bool follows_one_crease(const BlockRules& rules);
 };
 
 }  // namespace tetwright

@@ -179,6 +179,7 @@ std::vector<Index> points_off_features(const EditableMesh& mesh, const SurfaceGr
     for (int f = 0; f < 4; ++f) {
       const FaceLink link = mesh.link(t, f);
       if (!(first_body_patch == 0 ? link.is_outside() : link.is_interface())) continue;
+      if (!link.is_outside() && link.tet() < t) continue;  // the face's other side
       const Triangle face = face_of(mesh.points(t), f);
       const std::uint32_t patch = link.is_outside() ? link.patch() : grid.patch(mesh, face);
       if (patch < first_body_patch) continue;
