@@ -16,6 +16,9 @@ inline constexpr double max_tets_to_simplify = 0.8 * (1 << 30);
 struct BrickPlan {
   int cells = 0;         ///< edge of a brick, finest cells before any are halved
   unsigned workers = 1;  ///< bricks made at the same time, each by one thread; 1: one by all threads
+  /// How often a tet is coarsened before all bricks are joined, each time in other bricks; 1 to
+  /// BrickRoundsTuning::max_rounds.
+  int rounds = 1;
 };
 
 /// The memory and space that a job in bricks needs, bytes. Infinite if it has more tets in one mesh than can
@@ -38,9 +41,12 @@ class BrickEstimator {
   BrickEstimate operator()(const BrickPlan& plan) const;
   /// The plan for given bricks with as many workers as memory and threads allow.
   /// \param available bytes
-  BrickPlan with_workers(int cells, double available) const;
-  /// The largest bricks, and the most workers, for which the memory suffices; if it never does, those that
-  /// need the least. \param available bytes
+  BrickPlan with_workers(int cells, int rounds, double available) const;
+  /// Likewise with the fewest rounds for which the memory suffices; if it never does, those that need the
+  /// least.
+  BrickPlan with_rounds(int cells, double available) const;
+  /// The largest bricks, and the most workers, for which the memory suffices with as few rounds as possible;
+  /// if it never does, those that need the least. \param available bytes
   BrickPlan choose(double available) const;
 
  private:
@@ -49,9 +55,11 @@ class BrickEstimator {
     double base;   ///< beside the workers
     double each;   ///< of a worker with one thread
     double alone;  ///< of one worker with all threads
+    double later_base, later_each;  ///< likewise, in the rounds after the first
     double scratch;
   };
-  Needs needs(int cells) const;
+  Needs needs(int cells, int rounds) const;
+  double memory(const BrickPlan& plan, const Needs& of) const;
 
   const LabelInput& labels_;
   double cell_, dense_, target_, field_, before_;

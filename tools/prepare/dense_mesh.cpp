@@ -133,8 +133,10 @@ Need need_of(const LabelInput& labels, const MesherOptions& options, const Prepa
   Need need{estimate_mesh(labels, options), 0, {}};
   need.bytes = static_cast<double>(need.whole.bytes);
   // A folder with bricks of an earlier call decides.
-  const int before = asked.use == BrickOptions::Use::automatic ? cells_of_job(asked.scratch) : 0;
-  const int cells = asked.use == BrickOptions::Use::always ? asked.cells : before;
+  const BrickDivision before = division_of_job(asked.scratch);
+  const int cells = asked.use == BrickOptions::Use::always      ? asked.cells
+                    : asked.use == BrickOptions::Use::automatic ? before.cells
+                                                                : 0;
   const double available = available_memory() / estimate_margin;
   const bool fits = need.bytes <= available && static_cast<double>(need.whole.tets) <= max_tets_to_simplify;
   if (cells == 0 && (asked.use == BrickOptions::Use::never || run.task != Task::prepare ||
@@ -142,7 +144,9 @@ Need need_of(const LabelInput& labels, const MesherOptions& options, const Prepa
     return need;
   const BrickEstimator estimate(labels, options, static_cast<double>(need.whole.tets),
                                 *run.options.target.tets, !asked.scratch.empty());
-  const BrickPlan plan = cells > 0 ? estimate.with_workers(cells, available) : estimate.choose(available);
+  const BrickPlan plan = cells == 0          ? estimate.choose(available)
+                         : before.cells == cells ? estimate.with_workers(cells, before.rounds, available)
+                                                 : estimate.with_rounds(cells, available);
   const double bytes = estimate(plan).memory;
   if (cells > 0 || bytes < need.bytes) {
     need.bytes = bytes;

@@ -388,6 +388,8 @@ struct CoarserCells {
 struct BrickReport {
   int cells = 0;             ///< edge of a brick, finest cells before any are halved
   std::size_t bricks = 0;    ///< number of bricks
+  /// How often the volume was coarsened before it was simplified whole, each time in other bricks.
+  int rounds = 1;
   std::size_t repeated = 0;  ///< times that a brick was made again with more cells around it
   /// Bricks made again without coarsening their boundary, since it met that of another one.
   std::size_t surfaces_kept = 0;
