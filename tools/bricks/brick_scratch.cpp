@@ -17,7 +17,6 @@
 #include "tetwright/error.h"
 #include "tetwright/files.h"
 #include "tetwright/prepare.h"
-#include "tools/tuning/brick_rounds_tuning.h"
 
 namespace tetwright {
 
@@ -168,7 +167,7 @@ BrickDivision division_of_job(const std::string& folder) {
   };
   const int cells = number(bricks_option, min_brick_cells, max_brick_cells);
   if (!std::has_single_bit(static_cast<unsigned>(cells))) return {};
-  return {cells, std::max(1, number(rounds_name, 1, BrickRoundsTuning::max_rounds))};
+  return {cells, std::max(1, number(rounds_option, 1, max_brick_rounds))};
 }
 
 }  // namespace tetwright

@@ -13,14 +13,20 @@ using BrickJob = std::vector<std::pair<std::string, std::string>>;
 /// Name of the value of --bricks in it.
 inline constexpr const char* bricks_option = "--bricks";
 
-/// Name of the number of rounds in it.
-inline constexpr const char* rounds_name = "rounds";
+/// Name of the number of rounds in it, even if it was chosen.
+inline constexpr const char* rounds_option = "--brick-rounds";
 
 /// Which file of a job.
 struct BrickFile {
   std::size_t brick = 0;
   int round = 1;              ///< from 1
   bool kept_surface = false;  ///< BrickTask::keep_surface: such a brick has another file
+};
+
+/// How a volume is divided.
+struct BrickDivision {
+  int cells = 0;   ///< the value of --bricks; 0: none
+  int rounds = 0;  ///< the value of --brick-rounds; 0: none
 };
 
 /// A folder with the finished bricks of a job. A brick's file appears complete or not at all, so that a job
@@ -55,12 +61,7 @@ class BrickScratch {
   int lock_ = -1;
 };
 
-/// How the volume of a job is divided.
-struct BrickDivision {
-  int cells = 0;   ///< the value of --bricks
-  int rounds = 1;  ///< BrickPlan::rounds
-};
-/// The division of the job whose bricks a folder has; without cells if there is none.
+/// The division of the job whose bricks a folder has, if there is one.
 BrickDivision division_of_job(const std::string& folder);
 
 }  // namespace tetwright

@@ -16,8 +16,8 @@ namespace {
 /// meeting_parts().
 /// \param part_of the part that has moved a boundary face, or the number of parts
 template <class PartOf>
-std::vector<std::size_t> meeting(const std::vector<Vec3>& points,
-                                 const std::vector<InterfaceTriangle>& faces, const PartOf& part_of) {
+std::vector<std::size_t> meeting(const std::vector<Vec3>& points, const std::vector<InterfaceTriangle>& faces,
+                                 const PartOf& part_of) {
   std::vector<Triangle> boundary;
   std::vector<std::size_t> parts;
   bool any = false;
@@ -130,8 +130,8 @@ std::vector<std::size_t> meeting_parts(const std::vector<PartBoundary>& parts) {
       if (!parts[b].shared[p]) moved_by[numbers[p]] = b;
     }
     for (const InterfaceTriangle& t : renumbered(parts[b].faces, numbers)) {
-      const bool moved = std::any_of(t.ids.begin(), t.ids.end(),
-                                     [&](Index p) { return moved_by[p] < parts.size(); });
+      const bool moved =
+          std::any_of(t.ids.begin(), t.ids.end(), [&](Index p) { return moved_by[p] < parts.size(); });
       if (moved)
         faces.push_back(t);
       else

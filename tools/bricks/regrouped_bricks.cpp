@@ -30,8 +30,8 @@ std::size_t ShiftedBricks::brick_at(const Vec3& centroid) const {
   const Vec3 at = to_bricks_ * (centroid - origin_);
   std::array<std::size_t, 3> brick;
   for (int a = 0; a < 3; ++a)
-    brick[a] = static_cast<std::size_t>(
-        std::clamp(std::floor(at[a]), 0.0, static_cast<double>(counts_[a] - 1)));
+    brick[a] =
+        static_cast<std::size_t>(std::clamp(std::floor(at[a]), 0.0, static_cast<double>(counts_[a] - 1)));
   return (brick[2] * counts_[1] + brick[1]) * counts_[0] + brick[0];
 }
 

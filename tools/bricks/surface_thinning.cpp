@@ -116,7 +116,9 @@ class ThinnedSurface {
     });
     return stays;
   }
-  bool is_around(Index face) const { return std::find(around_.begin(), around_.end(), face) != around_.end(); }
+  bool is_around(Index face) const {
+    return std::find(around_.begin(), around_.end(), face) != around_.end();
+  }
 
   /// Whether the faces after the collapse of p to ring_[to] are near all points removed so far.
   bool shape_stays(Index p, std::size_t to) {
@@ -134,7 +136,8 @@ class ThinnedSurface {
         return std::max({(a - at).squaredNorm(), (b - at).squaredNorm(), (a - b).squaredNorm()});
       };
       const double share = Thinning::min_shape * std::sqrt(3) / 2;
-      if (area_after < share * longest(target) && area_after * longest(points_[p]) < area_before * longest(target))
+      if (area_after < share * longest(target) &&
+          area_after * longest(points_[p]) < area_before * longest(target))
         return false;
       distances_.emplace_back(target, a, b);
     }

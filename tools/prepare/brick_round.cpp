@@ -53,9 +53,8 @@ void BrickRound::make(const std::vector<BrickTask>& tasks) {
     else
       left.push_back(task);
   // Largest first: nobody waits long for the last one.
-  std::stable_sort(left.begin(), left.end(), [&](const BrickTask& a, const BrickTask& b) {
-    return work_[a.brick] > work_[b.brick];
-  });
+  std::stable_sort(left.begin(), left.end(),
+                   [&](const BrickTask& a, const BrickTask& b) { return work_[a.brick] > work_[b.brick]; });
   std::size_t done = tasks.size() - left.size();
   const auto show = [&, caller = std::this_thread::get_id()] {
     if (std::this_thread::get_id() == caller)

@@ -112,7 +112,7 @@ BrickJob describe(const LabelInput& labels, const MesherOptions& options, const 
           {"checksum of the voxels", checksum(labels.regions)},
           {"checksum of the image", labels.image ? checksum(*labels.image) : "none"},
           {bricks_option, std::to_string(plan.cells)},
-          {rounds_name, std::to_string(plan.rounds)},
+          {rounds_option, std::to_string(plan.rounds)},
           {"--target-tets", std::to_string(*asked.target.tets)},
           {"cell size", numbers({cell_size(labels, options)})},
           {"--adaptivity", numbers({options.adaptivity})},
@@ -257,9 +257,9 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double de
     bricks.surfaces_kept = round.separate([&] { return meeting_in(store); });
     if (team) team->end();
     stages.begin("coarsen again");
-    gathered = coarsen_again(store,
-                             {labels, cell_size(labels, options), plan, density, coarsening, made.field},
-                             names_of(*made.field), run);
+    gathered =
+        coarsen_again(store, {labels, cell_size(labels, options), plan, density, coarsening, made.field},
+                      names_of(*made.field), run);
   }
   report.cells = gathered.leaves;
   report.lattice_tets = gathered.lattice_tets;

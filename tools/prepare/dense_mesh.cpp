@@ -82,8 +82,9 @@ DenseMesh mesh_input(const MesherInput& surfaces, PrepareRun& run) {
   MesherOptions options = common_options(run);
   if (cells.uniform && cells.max_refinement.value_or(0) > 0)
     throw UsageError("--uniform has cells of one size; leave out --max-refinement, or --uniform");
-  if (run.options.bricks.use == BrickOptions::Use::always || !run.options.bricks.scratch.empty())
-    throw UsageError("--bricks and --scratch are for segmented volumes; leave them out");
+  if (run.options.bricks.use == BrickOptions::Use::always || !run.options.bricks.scratch.empty() ||
+      run.options.bricks.rounds > 0)
+    throw UsageError("--bricks, --brick-rounds and --scratch are for segmented volumes; leave them out");
   if (!surfaces.layers.empty() && cells.min_thickness)
     throw UsageError("--min-thickness does not work with layers; leave out --layer, or --min-thickness");
   const double diagonal = (surfaces.high - surfaces.low).norm();
@@ -144,9 +145,8 @@ Need need_of(const LabelInput& labels, const MesherOptions& options, const Prepa
     return need;
   const BrickEstimator estimate(labels, options, static_cast<double>(need.whole.tets),
                                 *run.options.target.tets, !asked.scratch.empty());
-  const BrickPlan plan = cells == 0          ? estimate.choose(available)
-                         : before.cells == cells ? estimate.with_workers(cells, before.rounds, available)
-                                                 : estimate.with_rounds(cells, available);
+  const int rounds = asked.rounds > 0 ? asked.rounds : before.cells == cells ? before.rounds : 0;
+  const BrickPlan plan = estimate.choose({cells, rounds}, available);
   const double bytes = estimate(plan).memory;
   if (cells > 0 || bytes < need.bytes) {
     need.bytes = bytes;
@@ -178,10 +178,11 @@ DenseMesh mesh_input(LabelInput& labels, PrepareRun& run) {
     throw UsageError(
         "--tolerance of 'mesh' is for surfaces; for a volume use 'prepare --tolerance', which bounds the "
         "distance from the dense mesh");
-  if (need.bricks.cells == 0 && !run.options.bricks.scratch.empty())
-    run.progress.announce(
-        "the dense mesh fits in memory, so that --scratch is not used; --bricks CELLS "
-        "makes bricks all the same");
+  const BrickOptions& bricks = run.options.bricks;
+  if (need.bricks.cells == 0 && (!bricks.scratch.empty() || bricks.rounds > 0))
+    run.progress.announce("the dense mesh fits in memory, so that " +
+                          std::string(bricks.scratch.empty() ? "--brick-rounds" : "--scratch") +
+                          " is not used; --bricks CELLS makes bricks all the same");
   if (need.bricks.cells > 0)
     return mesh_bricks(std::move(labels), options, static_cast<double>(need.whole.tets), need.bricks, run);
   DenseMesh dense = mesh_labels(labels, options, &run.progress);
@@ -192,9 +193,11 @@ DenseMesh mesh_input(LabelInput& labels, PrepareRun& run) {
 DenseMesh mesh_input(ImplantedVolume& volume, PrepareRun& run) {
   const CellOptions& cells = run.options.cells;
   const TargetOptions& target = run.options.target;
-  if (run.options.bricks.use == BrickOptions::Use::always || !run.options.bricks.scratch.empty())
+  if (run.options.bricks.use == BrickOptions::Use::always || !run.options.bricks.scratch.empty() ||
+      run.options.bricks.rounds > 0)
     throw UsageError(
-        "--bricks and --scratch do not work with surfaces in a segmented volume; leave them out");
+        "--bricks, --brick-rounds and --scratch do not work with surfaces in a segmented volume; leave them "
+        "out");
   if (target.tolerance && run.task == Task::mesh)
     throw UsageError("--tolerance of 'mesh' is for surfaces alone; leave it out");
   MesherOptions options = common_options(run);

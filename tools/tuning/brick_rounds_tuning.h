@@ -3,12 +3,14 @@
 
 #include <array>
 
+#include "tetwright/prepare.h"
+
 namespace tetwright {
 
 /// The tuned constants of jobs whose bricks are regrouped and coarsened again.
 struct BrickRoundsTuning {
-  /// The most rounds. A third one mainly removes what the cuts of the first two have left.
-  static constexpr int max_rounds = 3;
+  /// A third round mainly removes what the cuts of the first two have left.
+  static constexpr int max_rounds = max_brick_rounds;
   /// Tets for each final one that a round after the first leaves, by round. coarsen() has its own number for
   /// the first one.
   static constexpr std::array<double, max_rounds> tets_for_final{0, 2, 2};

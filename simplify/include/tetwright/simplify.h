@@ -228,10 +228,10 @@ struct CoarsenOptions {
   std::string name = "mesh";
 };
 
-/// Coarsens a part of a mesh to about four times its target (CoarsenOptions::tets_for_final) and two tets more
-/// for each frozen boundary face, for simplify() of all parts together. It does not improve shapes, since later collapses would
-/// change them again, and nothing in it depends on other parts. Guarantees, parallelism and exceptions are
-/// those of simplify(); frozen points keep their coordinates to the last bit.
+/// Coarsens a part of a mesh to about four times its target (CoarsenOptions::tets_for_final) and two tets
+/// more for each frozen boundary face, for simplify() of all parts together. It does not improve shapes,
+/// since later collapses would change them again, and nothing in it depends on other parts. Guarantees,
+/// parallelism and exceptions are those of simplify(); frozen points keep their coordinates to the last bit.
 TetMesh coarsen(TetMesh mesh, const CoarsenOptions& options, SimplifyReport* report = nullptr,
                 Progress* progress = nullptr);
 

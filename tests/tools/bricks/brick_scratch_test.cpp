@@ -148,7 +148,8 @@ TEST_F(BrickScratchTest, AFullDiskLeavesTheOtherBricks) {
   {
     const FileSizeLimit limit(2000);
     for (const std::size_t brick : {1, 2})
-      expect_error<OutputError>([&] { scratch.write(brick, std::string(3000, 'b')); }, {scratch.file(brick)});
+      expect_error<OutputError>([&] { scratch.write({brick}, std::string(3000, 'b')); },
+                                {scratch.path({brick})});
     EXPECT_NO_THROW(scratch.write({3}, std::string(1000, 'c')));
   }
   EXPECT_EQ(scratch.read({0}), std::string(3000, 'a'));
@@ -162,14 +163,14 @@ TEST_F(BrickScratchTest, AFullDiskLeavesTheOtherBricks) {
 TEST_F(BrickScratchTest, NothingIsLeftAtTheEndExceptForeignFiles) {
   for (const bool foreign : {true, false}) {
     const BrickScratch scratch(path(), job);
-    for (const std::size_t brick : {0, 9, 1000}) scratch.write(brick, "x");
+    for (const std::size_t brick : {0, 9, 1000}) scratch.write({brick}, "x");
     EXPECT_EQ(scratch.used_bytes(), 3);
     const std::vector<std::string> names{"notes.txt", "brick-1.txt", "my-brick-2.tetwright", "tetwright-job"};
     for (const std::string& name : names)
       if (foreign) put(path(name), name);
-    scratch.write({9}, "y", true);
+    scratch.write({9, 1, true}, "y");
     EXPECT_EQ(scratch.read({9}), "x");
-    EXPECT_EQ(scratch.read(9, true), "y");
+    EXPECT_EQ(scratch.read({9, 1, true}), "y");
     scratch.remove();
     EXPECT_EQ(std::filesystem::exists(path()), foreign);
     if (!foreign) continue;
@@ -183,7 +184,7 @@ TEST_F(BrickScratchTest, NothingIsLeftAtTheEndExceptForeignFiles) {
 }
 
 TEST_F(BrickScratchTest, BricksOfAnUnknownJobAreRefused) {
-  { BrickScratch(path(), job).write(0, "x"); }
+  { BrickScratch(path(), job).write({0}, "x"); }
   std::filesystem::remove(path("tetwright-job.json"));
   expect_error<UsageError>([&] { const BrickScratch scratch(path(), job); },
                            {path(), "unknown job", "tetwright-job.json", "--scratch"});

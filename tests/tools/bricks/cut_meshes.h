@@ -50,7 +50,7 @@ inline TetMesh whole_mesh() {
 /// Cuts a mesh into parts as make_brick_part() does, but coarsens none.
 /// \param part_of the part of a tet, by its number and its centroid
 inline std::vector<BrickPart> cut(const TetMesh& whole, std::size_t parts,
-                           const std::function<std::size_t(std::size_t, const Vec3&)>& part_of) {
+                                  const std::function<std::size_t(std::size_t, const Vec3&)>& part_of) {
   std::vector<std::size_t> part(whole.tets.size());
   std::vector<std::set<std::size_t>> parts_of_point(whole.points.size());
   for (std::size_t t = 0; t < whole.tets.size(); ++t) {

@@ -115,8 +115,8 @@ TEST(RegroupedBricks, KeptSurfacesDoNotMove) {
   const RegroupedBricks regrouped = regroup(parts, ShiftedBricks(voxels(), 1, 4, 2));
   const auto outside = [](const BrickPart& part) {
     std::set<PlainFace> faces;
-    for (const PlainFace& face : plain_faces({.points = part.mesh.points,
-                                              .interfaces = find_interfaces(part.mesh)}))
+    for (const PlainFace& face :
+         plain_faces({.points = part.mesh.points, .interfaces = find_interfaces(part.mesh)}))
       if (!std::get<2>(face)) faces.insert(face);
     return faces;
   };

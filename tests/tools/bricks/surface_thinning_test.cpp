@@ -18,8 +18,8 @@ namespace {
 
 /// Two materials in a box of n cells, of which a smooth surface is the interface.
 TetMesh surface_of_waves(int n, double height) {
-  TetMesh mesh = grid_mesh({n, n, n},
-                           [&](int, int, int z) -> std::optional<MaterialTag> { return z < n / 2 ? 1 : 2; });
+  TetMesh mesh =
+      grid_mesh({n, n, n}, [&](int, int, int z) -> std::optional<MaterialTag> { return z < n / 2 ? 1 : 2; });
   mesh.interfaces = find_interfaces(mesh);
   for (Vec3& p : mesh.points)
     if (p.x() > 0 && p.x() < n && p.y() > 0 && p.y() < n && p.z() == n / 2)
@@ -54,7 +54,8 @@ double distance(const TetMesh& from, const TetMesh& to) {
   for (const InterfaceTriangle& t : from.interfaces)
     for (const Index p : t.ids) {
       double best = 1e300;
-      for (const TriangleDistance& d : faces.at(t.pair())) best = std::min(best, d.squared(from.points[p], best));
+      for (const TriangleDistance& d : faces.at(t.pair()))
+        best = std::min(best, d.squared(from.points[p], best));
       largest = std::max(largest, std::sqrt(best));
     }
   return largest;
