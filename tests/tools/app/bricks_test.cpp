@@ -343,12 +343,10 @@ TEST(BricksThatMeet, AreMadeAgainWithTheirBoundary) {
   EXPECT_LE(made.status, 1) << made.err;
   EXPECT_EQ(read_json(folder / "s.json").at("dense").at("bricks").at("surfaces_kept"), 2);
   EXPECT_EQ(run("check " + (folder / "made.vtu") + " --quiet").status, 0);
-  for (const std::string rounds : {"2", "3"}) {
-    const Answer more = run(call + " --brick-rounds " + rounds + " -o " + (folder / "more.vtu"));
-    EXPECT_LE(more.status, 1) << more.err;
-    EXPECT_GE(read_json(folder / "s.json").at("dense").at("bricks").at("surfaces_kept"), 2);
-    EXPECT_EQ(run("check " + (folder / "more.vtu") + " --quiet").status, 0);
-  }
+  const Answer more = run(call + " --brick-rounds 2 -o " + (folder / "more.vtu"));
+  EXPECT_LE(more.status, 1) << more.err;
+  EXPECT_GE(read_json(folder / "s.json").at("dense").at("bricks").at("surfaces_kept"), 2);
+  EXPECT_EQ(run("check " + (folder / "more.vtu") + " --quiet").status, 0);
   const Answer again = run(call + " --scratch " + (folder / "scratch") + " -o " + (folder / "again.vtu"));
   EXPECT_EQ(again.status, made.status);
   EXPECT_TRUE(contents(folder / "again.vtu") == contents(folder / "made.vtu"));
