@@ -29,6 +29,8 @@ std::size_t frozen_faces(const EditableMesh& mesh) {
 TetMesh coarsen(TetMesh mesh, const CoarsenOptions& options, SimplifyReport* report, Progress* progress) {
   if (!(options.target_tets > 0) || !std::isfinite(options.target_tets))
     throw UsageError("the target must be a number of tets above 0");
+  if (!(options.tets_for_final >= 0) || !std::isfinite(options.tets_for_final))
+    throw UsageError("the tets for each final one must be a number above 0, or 0 for the usual one");
   if (!(options.beta > 0) || !(options.gamma >= 0))
     throw UsageError("beta must be above 0 and gamma at least 0");
   check_mesh(mesh, options.frozen, options.name);
@@ -39,7 +41,8 @@ TetMesh coarsen(TetMesh mesh, const CoarsenOptions& options, SimplifyReport* rep
   engine.throw_if_stopped();
   merge_in_bulk(engine, options.target_tets, options.seed);
   engine.compact();
-  const double target = std::ceil(Coarsening::final_tets * options.target_tets) +
+  const double for_each = options.tets_for_final > 0 ? options.tets_for_final : Coarsening::final_tets;
+  const double target = std::ceil(for_each * options.target_tets) +
                         static_cast<double>(Coarsening::tets_for_frozen_face * frozen_faces(engine.mesh()));
   run_collapses(engine, options.target_tets, static_cast<std::size_t>(target), options.max_iterations);
   if (report) report->touching_points = engine.mesh().touching_points();

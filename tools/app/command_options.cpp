@@ -197,6 +197,17 @@ std::pair<BrickOptions::Use, int> parse_bricks(const std::string& text) {
   return {BrickOptions::Use::always, static_cast<int>(cells)};
 }
 
+/// Parses the value of --brick-rounds; 0: auto.
+int parse_brick_rounds(const std::string& text) {
+  if (text == "auto") return 0;
+  try {
+    return static_cast<int>(parse_whole_number("--brick-rounds", text, 1, max_brick_rounds));
+  } catch (const CLI::ValidationError&) {
+    throw CLI::ValidationError("--brick-rounds", "'" + text + "' is not auto or a number from 1 to " +
+                                                     std::to_string(max_brick_rounds));
+  }
+}
+
 void add_bricks(CLI::App& app, CommandLine& c) {
   app.add_option_function<std::string>(
          "--bricks",
@@ -205,8 +216,15 @@ void add_bricks(CLI::App& app, CommandLine& c) {
          },
          "Mesh and coarsen a segmented volume in bricks with this many cells along each edge, a power of two "
          "from 32 to 1024, so that its dense mesh is never in memory at once; auto: if that would not fit. "
-         "Equal numbers give equal bytes")
+         "Equal numbers give equal bytes (with equal --brick-rounds)")
       ->type_name("CELLS|auto|off")
+      ->default_str("auto");
+  app.add_option_function<std::string>(
+         "--brick-rounds",
+         [&c](const std::string& text) { c.options.bricks.rounds = parse_brick_rounds(text); },
+         "How often bricks are coarsened before all are joined, each time with other cuts; auto: as often as "
+         "the memory requires. With given --bricks, equal numbers give equal bytes")
+      ->type_name("1|2|3|auto")
       ->default_str("auto");
   app.add_option_function<std::string>(
          "--scratch",

@@ -177,6 +177,7 @@ void print_values(const ValueReport& values, const std::vector<BinsReport>& divi
 /// Line such as "64 bricks of 128 cells (--bricks 128), 12 of them finished before: 4000000 tets coarsened".
 void print_bricks(const BrickReport& bricks) {
   std::printf("%zu bricks of %d cells (--bricks %d)", bricks.bricks, bricks.cells, bricks.cells);
+  if (bricks.rounds > 1) std::printf(", in %d rounds", bricks.rounds);
   if (bricks.resumed > 0) std::printf(", %zu of them finished before", bricks.resumed);
   if (bricks.repeated > 0) std::printf(", %zu made again with more cells around them", bricks.repeated);
   if (bricks.surfaces_kept > 0)

@@ -46,6 +46,11 @@ class ByteWriter {
     for (const InterfaceTriangle& t : triangles)
       (*this)(t.ids, t.material, t.other.has_value(), t.other.value_or(0), t.patch);
   }
+  void add(const std::map<MaterialPair, InterfaceStatistics>& interfaces) {
+    add(interfaces.size());
+    for (const auto& [pair, known] : interfaces)
+      (*this)(pair.first, pair.second.has_value(), pair.second.value_or(0), known.triangles, known.area);
+  }
   void add(const std::map<MaterialTag, MaterialStatistics>& materials) {
     add(materials.size());
     for (const auto& [tag, material] : materials) (*this)(tag, material.tets, material.volume);
@@ -93,6 +98,17 @@ class ByteReader {
       if (two_sided) t.other = other;
     }
   }
+  void take(std::map<MaterialPair, InterfaceStatistics>& interfaces) {
+    for (std::size_t n = count(sizeof(MaterialTag)); n > 0; --n) {
+      MaterialPair pair;
+      bool two_sided = false;
+      MaterialTag other = 0;
+      (*this)(pair.first, two_sided, other);
+      if (two_sided) pair.second = other;
+      InterfaceStatistics& known = interfaces[pair];
+      (*this)(known.triangles, known.area);
+    }
+  }
   void take(std::map<MaterialTag, MaterialStatistics>& materials) {
     for (std::size_t n = count(sizeof(MaterialTag)); n > 0; --n) {
       MaterialTag tag = 0;
@@ -116,7 +132,7 @@ void archive(Archive& members, Part& part, Statistics& dense) {
   members(part.leaves, part.lattice_tets, part.isolated_vertices);
   members(dense.tets, dense.points, dense.materials, dense.volume, dense.min_solid_angle,
           dense.mean_solid_angle, dense.below_count, dense.below_percent, dense.min_dihedral,
-          dense.max_dihedral, dense.histogram, dense.dihedrals);
+          dense.max_dihedral, dense.histogram, dense.dihedrals, dense.interfaces);
 }
 
 /// Block by block: a damaged size in the frame must not ask for memory.

@@ -9,7 +9,7 @@
 namespace tetwright {
 
 /// Number of the layout of these bytes, and of what they mean: a higher one with each change.
-inline constexpr int brick_format = 1;
+inline constexpr int brick_format = 2;
 
 /// The bytes of a part, for files and messages of the same version of the program on machines of the same
 /// byte order: compressed by zstd, with its checksum.

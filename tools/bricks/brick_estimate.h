@@ -6,6 +6,7 @@
 
 #include "tetwright/mesher.h"
 #include "tetwright/mesher_input.h"
+#include "tools/bricks/brick_scratch.h"
 
 namespace tetwright {
 
@@ -16,6 +17,9 @@ inline constexpr double max_tets_to_simplify = 0.8 * (1 << 30);
 struct BrickPlan {
   int cells = 0;         ///< edge of a brick, finest cells before any are halved
   unsigned workers = 1;  ///< bricks made at the same time, each by one thread; 1: one by all threads
+  /// How often a tet is coarsened before all bricks are joined, each time in other bricks; 1 to
+  /// BrickRoundsTuning::max_rounds.
+  int rounds = 1;
 };
 
 /// The memory and space that a job in bricks needs, bytes. Infinite if it has more tets in one mesh than can
@@ -36,22 +40,25 @@ class BrickEstimator {
                  bool scratch);
   /// Passes over all voxels. Parallel.
   BrickEstimate operator()(const BrickPlan& plan) const;
-  /// The plan for given bricks with as many workers as memory and threads allow.
+  /// The largest bricks, and the most workers, for which the memory suffices with as few rounds as possible;
+  /// if it never does, those that need the least.
+  /// \param given what is not to be chosen
   /// \param available bytes
-  BrickPlan with_workers(int cells, double available) const;
-  /// The largest bricks, and the most workers, for which the memory suffices; if it never does, those that
-  /// need the least. \param available bytes
-  BrickPlan choose(double available) const;
+  BrickPlan choose(const BrickDivision& given, double available) const;
 
  private:
   struct Needs {
-    double rest;   ///< before and after the bricks are made
-    double base;   ///< beside the workers
-    double each;   ///< of a worker with one thread
-    double alone;  ///< of one worker with all threads
+    double rest;                    ///< before and after the bricks are made
+    double base;                    ///< beside the workers
+    double each;                    ///< of a worker with one thread
+    double alone;                   ///< of one worker with all threads
+    double later_base, later_each;  ///< likewise, in the rounds after the first
     double scratch;
   };
-  Needs needs(int cells) const;
+  Needs needs(int cells, int rounds) const;
+  double memory(const BrickPlan& plan, const Needs& of) const;
+  /// The plan with as many workers as memory and threads allow.
+  BrickPlan with_workers(int cells, int rounds, double available) const;
 
   const LabelInput& labels_;
   double cell_, dense_, target_, field_, before_;

@@ -2,10 +2,13 @@
 #include "tools/bricks/brick_part.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "common/mesh/point_table.h"
 #include "mesher/field_mesher.h"
+#include "tools/bricks/surface_thinning.h"
+#include "tools/tuning/brick_rounds_tuning.h"
 
 namespace tetwright {
 
@@ -33,7 +36,18 @@ void keep_surface(const TetMesh& dense, const std::vector<std::uint8_t>& shared,
   }
 }
 
-/// BrickPart::flags of a coarsened mesh.
+/// Thins the dense surface of a part, and keeps its statistics.
+/// \param density final tets per volume
+void thin_dense_surface(double density, BrickPart& part) {
+  part.dense.interfaces = mesh_statistics(part.surface).interfaces;
+  // Edges of regular tets of the mean final volume.
+  const double edge = std::cbrt(6 * std::sqrt(2.0) / density);
+  thin_surface(part.surface, part.surface_shared, BrickRoundsTuning::Surface::distance_edges * edge,
+               part.cut_faces);
+}
+
+}  // namespace
+
 std::vector<std::uint8_t> flags_of(const TetMesh& mesh, const std::vector<Vec3>& shared) {
   PointTable known(shared, shared.size());
   for (Index p = 0; p < shared.size(); ++p) known.add(p);
@@ -45,10 +59,9 @@ std::vector<std::uint8_t> flags_of(const TetMesh& mesh, const std::vector<Vec3>&
   return flags;
 }
 
-}  // namespace
-
 BrickPart make_brick_part(const BrickMesher& mesher, const CellBox& box, const BrickTask& task,
-                          double density, CoarsenOptions options, double threshold, Progress* progress) {
+                          double density, CoarsenOptions options, double threshold, bool thin,
+                          Progress* progress) {
   BrickPart part;
   part.kept_surface = task.keep_surface;
   BrickMesh made = mesher.mesh(box, task.halo, progress);
@@ -77,6 +90,7 @@ BrickPart make_brick_part(const BrickMesher& mesher, const CellBox& box, const B
         for (const Index p : t.ids) options.frozen[p] = 1;
   part.mesh = coarsen(std::move(dense.mesh), options, nullptr, progress);
   part.flags = flags_of(part.mesh, shared);
+  if (thin) thin_dense_surface(density, part);
   std::erase_if(part.mesh.interfaces, [](const InterfaceTriangle& t) { return t.patch == 0; });
   return part;
 }

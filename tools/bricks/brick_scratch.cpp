@@ -5,6 +5,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <bit>
 #include <cerrno>
 #include <charconv>
@@ -26,6 +27,7 @@ namespace fs = std::filesystem;
 constexpr const char* job_file = "tetwright-job.json";
 constexpr const char* lock_file = "tetwright.lock";
 constexpr const char* brick_prefix = "brick-";
+constexpr const char* round_infix = "-round-";
 constexpr const char* kept = "-kept";
 constexpr const char* brick_suffix = ".tetwright";
 /// Begin and end the names of temporary files of OutputFiles.
@@ -101,23 +103,23 @@ BrickScratch::BrickScratch(std::string folder, const BrickJob& job) : folder_(st
 
 BrickScratch::~BrickScratch() { close(lock_); }
 
-std::string BrickScratch::file(std::size_t brick, bool kept_surface) const {
-  const std::string name = brick_prefix + std::to_string(brick) + (kept_surface ? kept : "") + brick_suffix;
-  return (fs::path(folder_) / name).string();
+std::string BrickScratch::path(const BrickFile& file) const {
+  std::string name = brick_prefix + std::to_string(file.brick);
+  if (file.round > 1) name += round_infix + std::to_string(file.round);
+  if (file.kept_surface) name += kept;
+  return (fs::path(folder_) / (name + brick_suffix)).string();
 }
 
-bool BrickScratch::has(std::size_t brick, bool kept_surface) const {
+bool BrickScratch::has(const BrickFile& file) const {
   std::error_code error;
-  return fs::exists(file(brick, kept_surface), error);
+  return fs::exists(path(file), error);
 }
 
-void BrickScratch::write(std::size_t brick, const std::string& bytes, bool kept_surface) const {
-  write_file_atomically(file(brick, kept_surface), bytes);
+void BrickScratch::write(const BrickFile& file, const std::string& bytes) const {
+  write_file_atomically(path(file), bytes);
 }
 
-std::string BrickScratch::read(std::size_t brick, bool kept_surface) const {
-  return read_whole_file(file(brick, kept_surface));
-}
+std::string BrickScratch::read(const BrickFile& file) const { return read_whole_file(path(file)); }
 
 double BrickScratch::free_bytes() const {
   std::error_code error;
@@ -150,20 +152,22 @@ void BrickScratch::remove() const noexcept {
   }
 }
 
-int cells_of_job(const std::string& folder) {
+BrickDivision division_of_job(const std::string& folder) {
   const fs::path path = fs::path(folder) / job_file;
   std::error_code error;
-  if (folder.empty() || !fs::exists(path, error)) return 0;
+  if (folder.empty() || !fs::exists(path, error)) return {};
   const auto job = job_in(path.string());
-  const auto found = job.is_object() ? job.find(bricks_option) : job.end();
-  if (found == job.end() || !found->is_string()) return 0;
-  const std::string text = *found;
-  int cells = 0;
-  std::from_chars(text.data(), text.data() + text.size(), cells);
-  return cells >= min_brick_cells && cells <= max_brick_cells &&
-                 std::has_single_bit(static_cast<unsigned>(cells))
-             ? cells
-             : 0;
+  const auto number = [&](const char* name, int low, int high) {
+    const auto found = job.is_object() ? job.find(name) : job.end();
+    if (found == job.end() || !found->is_string()) return 0;
+    const std::string text = *found;
+    int value = 0;
+    std::from_chars(text.data(), text.data() + text.size(), value);
+    return value >= low && value <= high ? value : 0;
+  };
+  const int cells = number(bricks_option, min_brick_cells, max_brick_cells);
+  if (!std::has_single_bit(static_cast<unsigned>(cells))) return {};
+  return {cells, std::max(1, number(rounds_option, 1, max_brick_rounds))};
 }
 
 }  // namespace tetwright

@@ -13,6 +13,22 @@ using BrickJob = std::vector<std::pair<std::string, std::string>>;
 /// Name of the value of --bricks in it.
 inline constexpr const char* bricks_option = "--bricks";
 
+/// Name of the number of rounds in it, even if it was chosen.
+inline constexpr const char* rounds_option = "--brick-rounds";
+
+/// Which file of a job.
+struct BrickFile {
+  std::size_t brick = 0;
+  int round = 1;              ///< from 1
+  bool kept_surface = false;  ///< BrickTask::keep_surface: such a brick has another file
+};
+
+/// How a volume is divided.
+struct BrickDivision {
+  int cells = 0;   ///< the value of --bricks; 0: none
+  int rounds = 0;  ///< the value of --brick-rounds; 0: none
+};
+
 /// A folder with the finished bricks of a job. A brick's file appears complete or not at all, so that a job
 /// which was stopped goes on from its finished bricks.
 ///
@@ -27,14 +43,12 @@ class BrickScratch {
   BrickScratch(const BrickScratch&) = delete;
   BrickScratch& operator=(const BrickScratch&) = delete;
 
-  /// Path of a brick's file.
-  /// \param kept_surface BrickTask::keep_surface: such a brick has another file
-  std::string file(std::size_t brick, bool kept_surface = false) const;
-  bool has(std::size_t brick, bool kept_surface = false) const;
+  std::string path(const BrickFile& file) const;
+  bool has(const BrickFile& file) const;
   /// \throws OutputError if the file cannot be written; nothing of it is left then
-  void write(std::size_t brick, const std::string& bytes, bool kept_surface = false) const;
+  void write(const BrickFile& file, const std::string& bytes) const;
   /// \throws InputError if the file cannot be read
-  std::string read(std::size_t brick, bool kept_surface = false) const;
+  std::string read(const BrickFile& file) const;
   /// Space for more files, and of the files of bricks there are; bytes.
   double free_bytes() const;
   double used_bytes() const;
@@ -47,7 +61,7 @@ class BrickScratch {
   int lock_ = -1;
 };
 
-/// The value of --bricks of the job whose bricks a folder has; 0 if there is none.
-int cells_of_job(const std::string& folder);
+/// The division of the job whose bricks a folder has, if there is one.
+BrickDivision division_of_job(const std::string& folder);
 
 }  // namespace tetwright

@@ -3,56 +3,15 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <utility>
 
-#include "common/geometry/self_intersection.h"
 #include "common/mesh/point_joining.h"
-#include "common/parallel/parallel_sort.h"
-#include "tetwright/error.h"
+#include "tools/bricks/joined_parts.h"
+#include "tools/bricks/keyed_faces.h"
 
 namespace tetwright {
 
 namespace {
-
-Triangle ascending(Triangle ids) {
-  std::sort(ids.begin(), ids.end());
-  return ids;
-}
-
-struct KeyedFace {
-  Triangle key;  ///< ascending points
-  InterfaceTriangle face;
-  bool operator<(const KeyedFace& other) const {
-    return key != other.key ? key < other.key : face.material < other.face.material;
-  }
-};
-
-/// Adds those of the cut faces that separate two materials, or a material from the outside, ascending.
-void add_interfaces(std::vector<KeyedFace> cut, std::vector<InterfaceTriangle>& interfaces) {
-  parallel_sort(cut);
-  for (std::size_t i = 0; i < cut.size(); ++i) {
-    InterfaceTriangle face = cut[i].face;
-    if (i + 1 < cut.size() && cut[i + 1].key == cut[i].key) {
-      face.other = cut[++i].face.material;
-      TETWRIGHT_CHECK(i + 1 == cut.size() || cut[i + 1].key != cut[i].key);
-      if (face.is_sheet()) continue;
-    }
-    interfaces.push_back(face);
-  }
-}
-
-/// Sets the patches of the faces on the border of the volume.
-void set_patches(std::vector<KeyedFace> patched, std::vector<InterfaceTriangle>& interfaces) {
-  if (patched.empty()) return;
-  parallel_sort(patched);
-  for (InterfaceTriangle& t : interfaces) {
-    if (t.other) continue;
-    const KeyedFace wanted{ascending(t.ids), {{}, std::numeric_limits<MaterialTag>::min(), {}}};
-    const auto found = std::lower_bound(patched.begin(), patched.end(), wanted);
-    if (found != patched.end() && found->key == wanted.key) t.patch = found->face.patch;
-  }
-}
 
 void add(const MeshStatistics& part, MeshStatistics& all) {
   if (part.tets == 0) return;
@@ -103,7 +62,8 @@ void drop_unused_points(TetMesh& surface) {
 }
 
 /// Joins the surfaces of the dense meshes, and frees each of them.
-TetMesh joined_surface(std::vector<BrickPart>& parts) {
+/// \param faces_across receives the number of faces between bricks: the last ones
+TetMesh joined_surface(std::vector<BrickPart>& parts, std::size_t& faces_across) {
   std::vector<PiecePoints> pieces;
   pieces.reserve(parts.size());
   for (const BrickPart& part : parts) pieces.push_back({part.surface.points, part.surface_shared});
@@ -125,108 +85,75 @@ TetMesh joined_surface(std::vector<BrickPart>& parts) {
     for (const InterfaceTriangle& t : surface.interfaces) all.interfaces.push_back(renumbered(t));
     for (const InterfaceTriangle& t : std::exchange(parts[b].cut_faces, {})) {
       const InterfaceTriangle face = renumbered(t);
-      cut.push_back({ascending(face.ids), face});
+      cut.push_back(keyed(face));
     }
   }
+  const std::size_t inside = all.interfaces.size();
   add_interfaces(std::move(cut), all.interfaces);
+  faces_across = all.interfaces.size() - inside;
   drop_unused_points(all);
   return all;
 }
 
-/// GatheredMesh::meeting.
-/// \param brick_of the brick of a boundary face, or the number of bricks if none has moved it
-template <class BrickOf>
-std::vector<std::size_t> meeting_bricks(const TetMesh& mesh, const BrickOf& brick_of) {
-  std::vector<Triangle> boundary;
-  std::vector<std::size_t> bricks;
-  bool any = false;
-  for (const InterfaceTriangle& t : mesh.interfaces)
-    if (!t.other) {
-      boundary.push_back(t.ids);
-      bricks.push_back(brick_of(t));
-      any |= t.patch == 0;
+/// Sets the statistics of the dense mesh's faces.
+/// \param surface thinned if parts have statistics of their own faces
+void set_interfaces(const std::vector<BrickPart>& parts, const TetMesh& surface, std::size_t faces_across,
+                    MeshStatistics& dense) {
+  MeshStatistics faces = mesh_statistics(surface);
+  // Thinning keeps all edges where materials meet.
+  dense.junction_edges = faces.junction_edges;
+  const auto has_own = [](const BrickPart& part) { return !part.dense.interfaces.empty(); };
+  if (std::none_of(parts.begin(), parts.end(), has_own)) {
+    dense.interfaces = std::move(faces.interfaces);
+    return;
+  }
+  TetMesh across;
+  across.points = surface.points;
+  across.interfaces.assign(surface.interfaces.end() - static_cast<std::ptrdiff_t>(faces_across),
+                           surface.interfaces.end());
+  dense.interfaces = mesh_statistics(across).interfaces;
+  for (const BrickPart& part : parts)
+    for (const auto& [pair, known] : part.dense.interfaces) {
+      dense.interfaces[pair].triangles += known.triangles;
+      dense.interfaces[pair].area += known.area;
     }
-  std::vector<std::size_t> meeting;
-  if (!any) return meeting;  // the border of the volume is flat
-  for (const auto& [first, second] : self_intersections(mesh.points, boundary))
-    if (bricks[first] != bricks[second]) meeting.insert(meeting.end(), {bricks[first], bricks[second]});
-  std::sort(meeting.begin(), meeting.end());
-  meeting.erase(std::unique(meeting.begin(), meeting.end()), meeting.end());
-  return meeting;
 }
 
 }  // namespace
 
 GatheredMesh gather(std::vector<BrickPart>& parts, std::map<MaterialTag, std::string> names) {
+  return gather(parts, parts, 0, std::move(names));
+}
+
+GatheredMesh gather(std::vector<BrickPart>& parts, std::vector<BrickPart>& bricks, std::size_t shared_points,
+                    std::map<MaterialTag, std::string> names) {
   GatheredMesh all;
-  all.dense = statistics_of(parts);
-  for (const BrickPart& part : parts) {
-    all.leaves += part.leaves;
-    all.lattice_tets += part.lattice_tets;
-    all.isolated_vertices += part.isolated_vertices;
+  all.dense = statistics_of(bricks);
+  for (const BrickPart& brick : bricks) {
+    all.leaves += brick.leaves;
+    all.lattice_tets += brick.lattice_tets;
+    all.isolated_vertices += brick.isolated_vertices;
   }
-  std::vector<std::vector<std::uint8_t>> shared;
-  std::vector<PiecePoints> pieces;
-  std::size_t tets = 0;
-  for (const BrickPart& part : parts) {
-    std::vector<std::uint8_t>& of_part = shared.emplace_back(part.flags);
-    for (std::uint8_t& flag : of_part) flag &= BrickPart::shared;
-    pieces.push_back({part.mesh.points, of_part});
-    tets += part.mesh.tets.size();
-  }
-  JoinedPoints points = join_points(pieces);
-  TetMesh& mesh = all.mesh;
-  mesh.points.resize(points.count);
-  mesh.tets.reserve(tets);
-  mesh.materials.reserve(tets);
-  std::vector<std::uint8_t> candidates(points.count), shared_points(points.count);
-  std::vector<std::uint32_t> brick_of_point(points.count);
-  std::vector<KeyedFace> patched;
-  for (std::size_t b = 0; b < parts.size(); ++b) {
-    const TetMesh& part = parts[b].mesh;
-    const std::vector<Index> numbers = std::move(points.numbers[b]);
-    for (std::size_t p = 0; p < numbers.size(); ++p) {
-      mesh.points[numbers[p]] = part.points[p];
-      candidates[numbers[p]] |= parts[b].flags[p];
-      shared_points[numbers[p]] = shared[b][p];
-      brick_of_point[numbers[p]] = static_cast<std::uint32_t>(b);
-    }
-    for (Tet t : part.tets) {
-      for (Index& p : t) p = numbers[p];
-      mesh.tets.push_back(t);
-    }
-    mesh.materials.insert(mesh.materials.end(), part.materials.begin(), part.materials.end());
-    for (InterfaceTriangle t : part.interfaces) {
-      for (Index& p : t.ids) p = numbers[p];
-      patched.push_back({ascending(t.ids), t});
-    }
-  }
-  // Shared points are frozen, so the coarsened meshes have all of them.
-  all.dense.points +=
-      static_cast<std::size_t>(std::count(shared_points.begin(), shared_points.end(), BrickPart::shared));
-  mesh.interfaces = find_interfaces(mesh, &candidates);
-  set_patches(std::move(patched), mesh.interfaces);
-  mesh.material_names = std::move(names);
-  all.meeting = meeting_bricks(mesh, [&](const InterfaceTriangle& t) {
-    // A face of shared points alone was not moved.
-    const auto moved = std::find_if(t.ids.begin(), t.ids.end(), [&](Index p) { return !shared_points[p]; });
-    return moved == t.ids.end() ? parts.size() : brick_of_point[*moved];
-  });
+  JoinedParts joined = join_parts(parts);
+  // Shared points are frozen, so the meshes coarsened once have all of them.
+  if (&parts == &bricks)
+    shared_points =
+        static_cast<std::size_t>(std::count(joined.shared.begin(), joined.shared.end(), BrickPart::shared));
+  all.dense.points += shared_points;
+  all.meeting = meeting_parts(joined, parts.size());
+  all.mesh = std::move(joined.mesh);
+  all.mesh.material_names = std::move(names);
   if (!all.meeting.empty()) return all;
-  std::vector<std::vector<std::uint8_t>>().swap(shared);
-  for (std::vector<std::uint8_t>* of_points : {&candidates, &shared_points})
-    std::vector<std::uint8_t>().swap(*of_points);
-  std::vector<std::uint32_t>().swap(brick_of_point);
+  joined = {};
   for (BrickPart& part : parts) {
     part.mesh = {};
     std::vector<std::uint8_t>().swap(part.flags);
   }
   for (const auto& [tag, material] : all.dense.materials) all.original.volumes[tag] = material.volume;
   all.original.tets = all.dense.tets;
-  all.original.surface = joined_surface(parts);
-  MeshStatistics faces = mesh_statistics(all.original.surface);
-  all.dense.interfaces = std::move(faces.interfaces);
-  all.dense.junction_edges = faces.junction_edges;
+  std::size_t faces_across = 0;
+  all.original.surface = joined_surface(bricks, faces_across);
+  set_interfaces(bricks, all.original.surface, faces_across, all.dense);
   return all;
 }
 

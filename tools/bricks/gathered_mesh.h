@@ -28,4 +28,12 @@ struct GatheredMesh {
 /// \param names of the materials
 GatheredMesh gather(std::vector<BrickPart>& parts, std::map<MaterialTag, std::string> names);
 
+/// Likewise, if the bricks were regrouped and coarsened again.
+/// \param parts of the last round
+/// \param bricks of the first round, which have the surface and the statistics of the dense mesh; their
+///   coarsened meshes are not used
+/// \param shared_points the points that several bricks of the first round have
+GatheredMesh gather(std::vector<BrickPart>& parts, std::vector<BrickPart>& bricks, std::size_t shared_points,
+                    std::map<MaterialTag, std::string> names);
+
 }  // namespace tetwright

@@ -212,7 +212,7 @@ bool MpiTeam::helper_asked() {
     throw UsageError(
         "rank " + std::to_string(status.MPI_SOURCE) +
         " has another job than rank 0: other options, other voxels in its file or, since its memory is "
-        "another one, other cells; give all ranks the same, and --voxel-size");
+        "another one, other cells or rounds; give all ranks the same, --voxel-size and --brick-rounds");
   waiting_.push_back(status.MPI_SOURCE);
   return true;
 }

@@ -8,9 +8,6 @@
 #include <cstdio>
 #include <map>
 #include <memory>
-#include <mutex>
-#include <optional>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -27,8 +24,11 @@
 #include "tools/bricks/brick_estimate.h"
 #include "tools/bricks/brick_part.h"
 #include "tools/bricks/brick_scratch.h"
+#include "tools/bricks/brick_store.h"
 #include "tools/bricks/brick_team.h"
 #include "tools/bricks/gathered_mesh.h"
+#include "tools/prepare/brick_round.h"
+#include "tools/prepare/later_rounds.h"
 
 namespace tetwright {
 
@@ -96,7 +96,8 @@ std::string numbers(std::initializer_list<double> values) {
 }
 
 /// Everything that determines the bricks.
-BrickJob describe(const LabelInput& labels, const MesherOptions& options, int side, const PrepareRun& run) {
+BrickJob describe(const LabelInput& labels, const MesherOptions& options, const BrickPlan& plan,
+                  const PrepareRun& run) {
   const PrepareOptions& asked = run.options;
   const Eigen::Matrix3d& d = labels.directions;
   std::string tags;
@@ -110,7 +111,8 @@ BrickJob describe(const LabelInput& labels, const MesherOptions& options, int si
           {"labels", tags},
           {"checksum of the voxels", checksum(labels.regions)},
           {"checksum of the image", labels.image ? checksum(*labels.image) : "none"},
-          {bricks_option, std::to_string(side)},
+          {bricks_option, std::to_string(plan.cells)},
+          {rounds_option, std::to_string(plan.rounds)},
           {"--target-tets", std::to_string(*asked.target.tets)},
           {"cell size", numbers({cell_size(labels, options)})},
           {"--adaptivity", numbers({options.adaptivity})},
@@ -121,85 +123,6 @@ BrickJob describe(const LabelInput& labels, const MesherOptions& options, int si
           {"--gamma", numbers({asked.schedule.gamma})},
           {"--seed", std::to_string(asked.seed)}};
 }
-
-/// The bricks of a job, in memory or in files. Bricks may be kept concurrently.
-class Bricks {
- public:
-  Bricks(const std::vector<CellBox>& boxes, const BrickScratch* scratch, BrickReport& report)
-      : boxes_(boxes),
-        scratch_(scratch),
-        parts_(boxes.size()),
-        kept_surface_(boxes.size(), 0),
-        report_(report) {
-    report.bricks = boxes.size();
-  }
-
-  /// The border of a brick if a file has what the task asks for.
-  std::optional<BrickBorder> finished(const BrickTask& task) {
-    if (!scratch_ || !scratch_->has(task.brick, task.keep_surface)) return {};
-    try {
-      BrickPart part = read(task.brick, task.keep_surface);
-      if (part.border.halo < task.halo) return {};
-      ++report_.resumed;
-      kept_surface_[task.brick] = task.keep_surface;
-      return std::move(part.border);
-    } catch (const InputError&) {
-      return {};  // damaged: it is made again
-    }
-  }
-
-  /// Keeps a brick and returns its border.
-  BrickBorder keep(std::size_t brick, BrickPart part) {
-    check(brick, part);
-    kept_surface_[brick] = part.kept_surface;
-    if (scratch_) scratch_->write(brick, to_bytes(part), part.kept_surface);
-    BrickBorder border = std::move(part.border);
-    part.border = {};
-    if (!scratch_) parts_[brick] = std::move(part);
-    return border;
-  }
-  /// \param bytes to_bytes() of the brick
-  BrickBorder keep(std::size_t brick, const std::string& bytes) {
-    BrickPart part = brick_part(bytes, "brick " + std::to_string(brick));
-    if (!scratch_) return keep(brick, std::move(part));
-    check(brick, part);
-    kept_surface_[brick] = part.kept_surface;
-    scratch_->write(brick, bytes, part.kept_surface);
-    return std::move(part.border);
-  }
-
-  /// Joins all parts.
-  GatheredMesh joined(const std::map<MaterialTag, std::string>& names) {
-    if (!scratch_) return gather(parts_, names);
-    std::vector<BrickPart> parts;
-    for (std::size_t b = 0; b < parts_.size(); ++b) {
-      parts.push_back(read(b, kept_surface_[b] != 0));
-      parts.back().border = {};
-    }
-    report_.scratch_bytes = scratch_->used_bytes();
-    return gather(parts, names);
-  }
-
-  /// Frees the parts in memory.
-  void clear() { parts_ = {}; }
-
- private:
-  void check(std::size_t brick, const BrickPart& part) const {
-    if (part.border.brick != boxes_[brick])
-      throw InputError("brick " + std::to_string(brick), 0, "this is another brick; run the same call again");
-  }
-  BrickPart read(std::size_t brick, bool kept_surface) const {
-    BrickPart part = brick_part(scratch_->read(brick, kept_surface), scratch_->file(brick, kept_surface));
-    check(brick, part);
-    return part;
-  }
-
-  const std::vector<CellBox>& boxes_;
-  const BrickScratch* scratch_;  ///< null: in memory
-  std::vector<BrickPart> parts_;
-  std::vector<std::uint8_t> kept_surface_;  ///< by brick: BrickPart::kept_surface
-  BrickReport& report_;
-};
 
 /// Numbers of faces in each brick, which the time that it takes follows.
 std::vector<std::size_t> work_in(const std::vector<CellBox>& boxes, const BoxFaces& faces) {
@@ -227,7 +150,8 @@ std::string gigabytes(double bytes) {
 void check_space(const BrickEstimator& estimate, const BrickPlan& plan, const BrickScratch* scratch,
                  const PrepareRun& run) {
   const BrickEstimate needed = estimate(plan);
-  const std::string what = "bricks of " + std::to_string(plan.cells) + " cells";
+  const std::string what = "bricks of " + std::to_string(plan.cells) + " cells" +
+                           (plan.rounds > 1 ? " in " + std::to_string(plan.rounds) + " rounds" : "");
   if (std::isinf(needed.memory))
     throw OutputError("the mesh from " + what +
                       " would have more than 2^30 tets; give fewer by --target-tets" +
@@ -246,22 +170,12 @@ void check_space(const BrickEstimator& estimate, const BrickPlan& plan, const Br
                       "; free some, or give --scratch another folder");
 }
 
-/// Makes bricks, `workers` of them at the same time.
-/// \param keep is called by one thread at a time
-template <class Make, class Keep>
-void make_alone(const std::vector<BrickTask>& tasks, unsigned workers, const Make& make, const Keep& keep) {
-  if (workers == 1) {
-    for (const BrickTask& task : tasks) keep(task.brick, make(task));
-    return;
-  }
-  const ThreadLimit limit(workers);
-  std::mutex mutex;
-  parallel_chunks(tasks.size(), [&](std::size_t i, unsigned) {
-    const ThreadLimit one(1);
-    BrickPart part = make(tasks[i]);
-    const std::lock_guard guard(mutex);
-    keep(tasks[i].brick, std::move(part));
-  });
+/// Names of the materials that have one.
+std::map<MaterialTag, std::string> names_of(const MaterialField& field) {
+  std::map<MaterialTag, std::string> names;
+  for (const FieldRegion& region : field.regions())
+    if (!region.name.empty()) names[region.tag] = region.name;
+  return names;
 }
 
 }  // namespace
@@ -277,9 +191,10 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double de
   MesherReport& report = made.report;
   BrickReport& bricks = run.report.bricks.emplace();
   bricks.cells = plan.cells;
+  bricks.rounds = plan.rounds;
   BrickTeam* const team = run.options.bricks.team;
   const bool leads = !team || team->is_leader();
-  const BrickJob job = describe(labels, options, plan.cells, run);
+  const BrickJob job = describe(labels, options, plan, run);
   if (!run.options.bricks.scratch.empty() && leads)
     run.scratch = std::make_shared<BrickScratch>(run.options.bricks.scratch, job);
   if (run.scratch && run.options.bricks.when_kept) run.options.bricks.when_kept();
@@ -304,69 +219,48 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double de
 
   stages.begin("bricks");
   const std::vector<CellBox> boxes = mesher.bricks(plan.cells << report.refinement);
-  const std::vector<std::size_t> work = work_in(boxes, faces);
   const double density =
       static_cast<double>(*run.options.target.tets) / meshed_volume(labels, options.keep_outside);
   const CoarsenOptions coarsening = coarsen_options(run.options, run.report.inputs.front());
+  const bool again = plan.rounds > 1;
   const auto make = [&](const BrickTask& task) {
     return make_brick_part(mesher, boxes[task.brick], task, density, coarsening, run.options.shapes.bound(),
-                           &run.progress);
+                           again, &run.progress);
   };
   if (!leads) {
     team->help(make);
     throw HelperFinished();
   }
-  Bricks all(boxes, run.scratch.get(), bricks);
-  std::vector<BrickBorder> borders(boxes.size());
-  const auto make_all = [&](const std::vector<BrickTask>& tasks) {
-    std::vector<BrickTask> left;
-    for (const BrickTask& task : tasks)
-      if (std::optional<BrickBorder> border = all.finished(task))
-        borders[task.brick] = std::move(*border);
-      else
-        left.push_back(task);
-    // Largest first: nobody waits long for the last one.
-    std::stable_sort(left.begin(), left.end(),
-                     [&](const BrickTask& a, const BrickTask& b) { return work[a.brick] > work[b.brick]; });
-    std::size_t done = tasks.size() - left.size();
-    const auto show = [&, caller = std::this_thread::get_id()] {
-      if (std::this_thread::get_id() == caller)
-        run.progress.update(static_cast<double>(done) / static_cast<double>(tasks.size()));
-    };
-    show();
-    const auto keep = [&](std::size_t brick, auto part) {
-      borders[brick] = all.keep(brick, std::move(part));
-      ++done;
-      show();
-    };
-    if (team)
-      team->lead(left, make, keep);
-    else
-      make_alone(left, plan.workers, make, keep);
-  };
-  bricks.repeated = make_bricks(mesher, boxes, borders, [&](const std::vector<BrickOrder>& orders) {
+  bricks.bricks = boxes.size();
+  BrickStore store(boxes, run.scratch.get(), 1, bricks);
+  BrickRound round(store, work_in(boxes, faces), plan.workers, team, make, run.progress);
+  bricks.repeated = make_bricks(mesher, boxes, round.borders(), [&](const std::vector<BrickOrder>& orders) {
     std::vector<BrickTask> tasks;
     tasks.reserve(orders.size());
     for (const BrickOrder& order : orders) tasks.push_back({order.brick, order.halo, false});
-    make_all(tasks);
+    round.make(tasks);
   });
-  std::map<MaterialTag, std::string> names;
-  for (const FieldRegion& region : made.field->regions())
-    if (!region.name.empty()) names[region.tag] = region.name;
-  GatheredMesh gathered = all.joined(names);
-  for (std::vector<std::uint8_t> kept(boxes.size(), 0); !gathered.meeting.empty();
-       gathered = all.joined(names)) {
-    std::vector<BrickTask> tasks;
-    for (const std::size_t b : gathered.meeting)
-      if (b < boxes.size() && !std::exchange(kept[b], 1)) tasks.push_back({b, borders[b].halo, true});
-    // Surfaces that were not moved do not meet.
-    TETWRIGHT_CHECK(!tasks.empty());
-    gathered = {};
-    bricks.surfaces_kept += tasks.size();
-    make_all(tasks);
+  GatheredMesh gathered;
+  if (!again) {
+    bricks.surfaces_kept = round.separate([&] {
+      std::vector<BrickPart> parts = store.take();
+      gathered = gather(parts, names_of(*made.field));
+      std::vector<std::size_t> meeting = std::move(gathered.meeting);
+      if (!meeting.empty()) {
+        gathered = {};
+        store.put_back(std::move(parts));
+      }
+      return meeting;
+    });
+    if (team) team->end();
+  } else {
+    bricks.surfaces_kept = round.separate([&] { return meeting_in(store); });
+    if (team) team->end();
+    stages.begin("coarsen again");
+    gathered =
+        coarsen_again(store, {labels, cell_size(labels, options), plan, density, coarsening, made.field},
+                      names_of(*made.field), run);
   }
-  if (team) team->end();
-  all.clear();
   report.cells = gathered.leaves;
   report.lattice_tets = gathered.lattice_tets;
   report.isolated_vertices = gathered.isolated_vertices;

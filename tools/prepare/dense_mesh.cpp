@@ -83,8 +83,9 @@ DenseMesh mesh_input(const MesherInput& surfaces, PrepareRun& run) {
   MesherOptions options = common_options(run);
   if (cells.uniform && cells.max_refinement.value_or(0) > 0)
     throw UsageError("--uniform has cells of one size; leave out --max-refinement, or --uniform");
-  if (run.options.bricks.use == BrickOptions::Use::always || !run.options.bricks.scratch.empty())
-    throw UsageError("--bricks and --scratch are for segmented volumes; leave them out");
+  if (run.options.bricks.use == BrickOptions::Use::always || !run.options.bricks.scratch.empty() ||
+      run.options.bricks.rounds > 0)
+    throw UsageError("--bricks, --brick-rounds and --scratch are for segmented volumes; leave them out");
   if (!surfaces.layers.empty() && cells.min_thickness)
     throw UsageError("--min-thickness does not work with layers; leave out --layer, or --min-thickness");
   const double diagonal = (surfaces.high - surfaces.low).norm();
@@ -124,8 +125,10 @@ Need need_of(const LabelInput& labels, const MesherOptions& options, const Prepa
   Need need{estimate_mesh(labels, options), 0, {}};
   need.bytes = static_cast<double>(need.whole.bytes);
   // A folder with bricks of an earlier call decides.
-  const int before = asked.use == BrickOptions::Use::automatic ? cells_of_job(asked.scratch) : 0;
-  const int cells = asked.use == BrickOptions::Use::always ? asked.cells : before;
+  const BrickDivision before = division_of_job(asked.scratch);
+  const int cells = asked.use == BrickOptions::Use::always      ? asked.cells
+                    : asked.use == BrickOptions::Use::automatic ? before.cells
+                                                                : 0;
   const double available = available_memory() / estimate_margin;
   const bool fits = need.bytes <= available && static_cast<double>(need.whole.tets) <= max_tets_to_simplify;
   if (cells == 0 && (asked.use == BrickOptions::Use::never || run.task != Task::prepare ||
@@ -133,7 +136,8 @@ Need need_of(const LabelInput& labels, const MesherOptions& options, const Prepa
     return need;
   const BrickEstimator estimate(labels, options, static_cast<double>(need.whole.tets),
                                 *run.options.target.tets, !asked.scratch.empty());
-  const BrickPlan plan = cells > 0 ? estimate.with_workers(cells, available) : estimate.choose(available);
+  const int rounds = asked.rounds > 0 ? asked.rounds : before.cells == cells ? before.rounds : 0;
+  const BrickPlan plan = estimate.choose({cells, rounds}, available);
   const double bytes = estimate(plan).memory;
   if (cells > 0 || bytes < need.bytes) {
     need.bytes = bytes;
@@ -165,10 +169,11 @@ DenseMesh mesh_input(LabelInput& labels, PrepareRun& run) {
     throw UsageError(
         "--tolerance of 'mesh' is for surfaces; for a volume use 'prepare --tolerance', which bounds the "
         "distance from the dense mesh");
-  if (need.bricks.cells == 0 && !run.options.bricks.scratch.empty())
-    run.progress.announce(
-        "the dense mesh fits in memory, so that --scratch is not used; --bricks CELLS "
-        "makes bricks all the same");
+  const BrickOptions& bricks = run.options.bricks;
+  if (need.bricks.cells == 0 && (!bricks.scratch.empty() || bricks.rounds > 0))
+    run.progress.announce("the dense mesh fits in memory, so that " +
+                          std::string(bricks.scratch.empty() ? "--brick-rounds" : "--scratch") +
+                          " is not used; --bricks CELLS makes bricks all the same");
   if (need.bricks.cells > 0)
     return mesh_bricks(std::move(labels), options, static_cast<double>(need.whole.tets), need.bricks, run);
   DenseMesh dense = mesh_labels(labels, options, &run.progress);
@@ -179,9 +184,11 @@ DenseMesh mesh_input(LabelInput& labels, PrepareRun& run) {
 DenseMesh mesh_input(ImplantedVolume& volume, PrepareRun& run) {
   const CellOptions& cells = run.options.cells;
   const TargetOptions& target = run.options.target;
-  if (run.options.bricks.use == BrickOptions::Use::always || !run.options.bricks.scratch.empty())
+  if (run.options.bricks.use == BrickOptions::Use::always || !run.options.bricks.scratch.empty() ||
+      run.options.bricks.rounds > 0)
     throw UsageError(
-        "--bricks and --scratch do not work with surfaces in a segmented volume; leave them out");
+        "--bricks, --brick-rounds and --scratch do not work with surfaces in a segmented volume; leave them "
+        "out");
   if (target.tolerance && run.task == Task::mesh)
     throw UsageError("--tolerance of 'mesh' is for surfaces alone; leave it out");
   if (cells.uniform && cells.max_refinement.value_or(0) > 0)

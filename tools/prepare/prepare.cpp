@@ -232,8 +232,13 @@ void check_options(Task task, const PrepareOptions& options) {
                      " is no probability; give a number from 0 to 1 (for other values --iso)");
   check_value_options(task, options.values);
   if (options.bricks.use == BrickOptions::Use::always) check_bricks(task, options);
-  if (options.bricks.use == BrickOptions::Use::never && !options.bricks.scratch.empty())
-    throw UsageError("--scratch is for bricks; leave it out, or --bricks off");
+  const BrickOptions& bricks = options.bricks;
+  if (bricks.use == BrickOptions::Use::never && (!bricks.scratch.empty() || bricks.rounds > 0))
+    throw UsageError(std::string(bricks.scratch.empty() ? "--brick-rounds" : "--scratch") +
+                     " is for bricks; leave it out, or --bricks off");
+  if (bricks.rounds < 0 || bricks.rounds > max_brick_rounds)
+    throw UsageError("--brick-rounds must be from 1 to " + std::to_string(max_brick_rounds) + ", not " +
+                     std::to_string(bricks.rounds));
   if (options.order != 1 && options.order != 2) throw UsageError("the order of elements must be 1 or 2");
   if (options.cells.resolution && options.cells.size)
     throw UsageError("give --resolution or --voxel-size, not both");

@@ -356,6 +356,7 @@ void add_mesher_json(const MesherReport& m, nlohmann::json& dense) {
 nlohmann::json bricks_json(const BrickReport& bricks) {
   return {{"cells", bricks.cells},
           {"count", bricks.bricks},
+          {"rounds", bricks.rounds},
           {"repeated", bricks.repeated},
           {"surfaces_kept", bricks.surfaces_kept},
           {"resumed", bricks.resumed},

@@ -215,6 +215,9 @@ TetMesh simplify(TetMesh mesh, const SimplifyOptions& options, SimplifyReport* r
 struct CoarsenOptions {
   /// Number of tets of the final mesh in the volume of this part, above 0.
   double target_tets = 0;
+  /// Tets to leave for each of them, besides those at frozen faces; 0: four. Fewer for a mesh that has been
+  /// coarsened before, in other parts.
+  double tets_for_final = 0;
   /// One value for each point of the mesh, nonzero if frozen: those shared with other parts.
   std::vector<std::uint8_t> frozen;
   double beta = 5, gamma = 10;  ///< as in SimplifyOptions, like all that follow
@@ -225,10 +228,10 @@ struct CoarsenOptions {
   std::string name = "mesh";
 };
 
-/// Coarsens a part of a mesh to about four times its target and two tets more for each frozen boundary
-/// face, for simplify() of all parts together. It does not improve shapes, since later collapses would
-/// change them again, and nothing in it depends on other parts. Guarantees, parallelism and exceptions are
-/// those of simplify(); frozen points keep their coordinates to the last bit.
+/// Coarsens a part of a mesh to about four times its target (CoarsenOptions::tets_for_final) and two tets
+/// more for each frozen boundary face, for simplify() of all parts together. It does not improve shapes,
+/// since later collapses would change them again, and nothing in it depends on other parts. Guarantees,
+/// parallelism and exceptions are those of simplify(); frozen points keep their coordinates to the last bit.
 TetMesh coarsen(TetMesh mesh, const CoarsenOptions& options, SimplifyReport* report = nullptr,
                 Progress* progress = nullptr);
 

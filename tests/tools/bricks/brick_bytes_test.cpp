@@ -48,6 +48,7 @@ BrickPart small_part() {
   dense.histogram.counts.back().back() = 42;
   dense.dihedrals.counts.front() = 43;
   dense.dihedrals.counts.back() = 44;
+  dense.interfaces = {{{-7, {}}, {45, 46.5}}, {{-7, 3}, {47, 48.5}}};
   return part;
 }
 
@@ -90,7 +91,12 @@ void expect_equal(const BrickPart& a, const BrickPart& b) {
     EXPECT_EQ(std::bit_cast<std::uint64_t>(a.dense.*angle), std::bit_cast<std::uint64_t>(b.dense.*angle));
   EXPECT_EQ(a.dense.histogram.counts, b.dense.histogram.counts);
   EXPECT_EQ(a.dense.dihedrals.counts, b.dense.dihedrals.counts);
-  EXPECT_TRUE(b.dense.interfaces.empty());
+  ASSERT_EQ(a.dense.interfaces.size(), b.dense.interfaces.size());
+  for (const auto& [pair, known] : b.dense.interfaces) {
+    ASSERT_EQ(a.dense.interfaces.count(pair), 1u);
+    EXPECT_EQ(a.dense.interfaces.at(pair).triangles, known.triangles);
+    EXPECT_EQ(a.dense.interfaces.at(pair).area, known.area);
+  }
   EXPECT_TRUE(b.dense.sheets.empty());
 }
 

@@ -57,27 +57,27 @@ TEST_F(BrickScratchTest, KeepsBricksForTheNextProcess) {
   const std::string bytes("a\0b", 3);
   {
     const BrickScratch scratch(path(), job);
-    EXPECT_FALSE(scratch.has(0));
-    scratch.write(0, "old");
-    scratch.write(0, bytes);
-    scratch.write(12, "");
-    EXPECT_EQ(scratch.read(0), bytes);
+    EXPECT_FALSE(scratch.has({0}));
+    scratch.write({0}, "old");
+    scratch.write({0}, bytes);
+    scratch.write({12}, "");
+    EXPECT_EQ(scratch.read({0}), bytes);
     EXPECT_GT(scratch.free_bytes(), 0);
   }
   const BrickScratch scratch(path(), job);
-  EXPECT_TRUE(scratch.has(0));
-  EXPECT_FALSE(scratch.has(1));
-  EXPECT_TRUE(scratch.has(12));
-  EXPECT_EQ(scratch.read(0), bytes);
-  EXPECT_EQ(scratch.read(12), "");
-  EXPECT_TRUE(std::filesystem::is_regular_file(scratch.file(12)));
-  expect_error<InputError>([&] { (void)scratch.read(1); }, {scratch.file(1)});
-  EXPECT_EQ(scratch.file(1), path("brick-1.tetwright"));
+  EXPECT_TRUE(scratch.has({0}));
+  EXPECT_FALSE(scratch.has({1}));
+  EXPECT_TRUE(scratch.has({12}));
+  EXPECT_EQ(scratch.read({0}), bytes);
+  EXPECT_EQ(scratch.read({12}), "");
+  EXPECT_TRUE(std::filesystem::is_regular_file(scratch.path({12})));
+  expect_error<InputError>([&] { (void)scratch.read({1}); }, {scratch.path({1})});
+  EXPECT_EQ(scratch.path({1}), path("brick-1.tetwright"));
 }
 
 TEST_F(BrickScratchTest, MakesFoldersWithinFolders) {
   const BrickScratch scratch(path("a/b"), job);
-  scratch.write(3, "x");
+  scratch.write({3}, "x");
   EXPECT_EQ(contents(path("a/b/brick-3.tetwright")), "x");
 }
 
@@ -143,18 +143,19 @@ TEST_F(BrickScratchTest, AFileInsteadOfTheFolderIsRefused) {
 
 TEST_F(BrickScratchTest, AFullDiskLeavesTheOtherBricks) {
   const BrickScratch scratch(path(), job);
-  scratch.write(0, std::string(3000, 'a'));
-  scratch.write(1, "old");
+  scratch.write({0}, std::string(3000, 'a'));
+  scratch.write({1}, "old");
   {
     const FileSizeLimit limit(2000);
     for (const std::size_t brick : {1, 2})
-      expect_error<OutputError>([&] { scratch.write(brick, std::string(3000, 'b')); }, {scratch.file(brick)});
-    EXPECT_NO_THROW(scratch.write(3, std::string(1000, 'c')));
+      expect_error<OutputError>([&] { scratch.write({brick}, std::string(3000, 'b')); },
+                                {scratch.path({brick})});
+    EXPECT_NO_THROW(scratch.write({3}, std::string(1000, 'c')));
   }
-  EXPECT_EQ(scratch.read(0), std::string(3000, 'a'));
-  EXPECT_EQ(scratch.read(1), "old");
-  EXPECT_FALSE(scratch.has(2));
-  EXPECT_TRUE(scratch.has(3));
+  EXPECT_EQ(scratch.read({0}), std::string(3000, 'a'));
+  EXPECT_EQ(scratch.read({1}), "old");
+  EXPECT_FALSE(scratch.has({2}));
+  EXPECT_TRUE(scratch.has({3}));
   // The job's file, the lock and three bricks.
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(path()), {}), 5);
 }
@@ -162,14 +163,14 @@ TEST_F(BrickScratchTest, AFullDiskLeavesTheOtherBricks) {
 TEST_F(BrickScratchTest, NothingIsLeftAtTheEndExceptForeignFiles) {
   for (const bool foreign : {true, false}) {
     const BrickScratch scratch(path(), job);
-    for (const std::size_t brick : {0, 9, 1000}) scratch.write(brick, "x");
+    for (const std::size_t brick : {0, 9, 1000}) scratch.write({brick}, "x");
     EXPECT_EQ(scratch.used_bytes(), 3);
     const std::vector<std::string> names{"notes.txt", "brick-1.txt", "my-brick-2.tetwright", "tetwright-job"};
     for (const std::string& name : names)
       if (foreign) put(path(name), name);
-    scratch.write(9, "y", true);
-    EXPECT_EQ(scratch.read(9), "x");
-    EXPECT_EQ(scratch.read(9, true), "y");
+    scratch.write({9, 1, true}, "y");
+    EXPECT_EQ(scratch.read({9}), "x");
+    EXPECT_EQ(scratch.read({9, 1, true}), "y");
     scratch.remove();
     EXPECT_EQ(std::filesystem::exists(path()), foreign);
     if (!foreign) continue;
@@ -183,7 +184,7 @@ TEST_F(BrickScratchTest, NothingIsLeftAtTheEndExceptForeignFiles) {
 }
 
 TEST_F(BrickScratchTest, BricksOfAnUnknownJobAreRefused) {
-  { BrickScratch(path(), job).write(0, "x"); }
+  { BrickScratch(path(), job).write({0}, "x"); }
   std::filesystem::remove(path("tetwright-job.json"));
   expect_error<UsageError>([&] { const BrickScratch scratch(path(), job); },
                            {path(), "unknown job", "tetwright-job.json", "--scratch"});

@@ -202,6 +202,9 @@ struct BrickOptions {
   /// With Use::always: edge of a brick, finest cells before any are halved; a power of two in this range. It
   /// determines the result.
   int cells = 0;
+  /// How often bricks are coarsened before all of them are joined, from the second time on in bricks with
+  /// other cuts: 1 to max_brick_rounds; 0: as often as the memory requires. It determines the result.
+  int rounds = 0;
   /// Folder for finished bricks, made if it does not exist: they need no memory until all are finished, and a
   /// job that was stopped goes on from them. Empty: in memory.
   std::string scratch;
@@ -211,6 +214,7 @@ struct BrickOptions {
   BrickTeam* team = nullptr;
 };
 inline constexpr int min_brick_cells = 32, max_brick_cells = 1024, default_brick_cells = 128;
+inline constexpr int max_brick_rounds = 3;
 
 /// Default of LabelOptions::min_voxels.
 inline constexpr std::size_t default_min_voxels = 8;
@@ -386,8 +390,10 @@ struct CoarserCells {
 
 /// How a segmented volume was meshed in bricks.
 struct BrickReport {
-  int cells = 0;             ///< edge of a brick, finest cells before any are halved
-  std::size_t bricks = 0;    ///< number of bricks
+  int cells = 0;           ///< edge of a brick, finest cells before any are halved
+  std::size_t bricks = 0;  ///< number of bricks
+  /// How often the volume was coarsened before it was simplified whole, each time in other bricks.
+  int rounds = 1;
   std::size_t repeated = 0;  ///< times that a brick was made again with more cells around it
   /// Bricks made again without coarsening their boundary, since it met that of another one.
   std::size_t surfaces_kept = 0;

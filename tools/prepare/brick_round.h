@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <vector>
+
+#include "tetwright/progress.h"
+#include "tools/bricks/brick_store.h"
+#include "tools/bricks/brick_team.h"
+
+namespace tetwright {
+
+/// Has the bricks of a round made, and keeps them.
+class BrickRound {
+ public:
+  /// \param store all arguments must outlive this object
+  /// \param work of each brick, in any unit: those with most of it are made first
+  /// \param workers bricks made at the same time, each by one thread; 1: one by all threads
+  /// \param team null: this process alone
+  BrickRound(BrickStore& store, std::vector<std::size_t> work, unsigned workers, BrickTeam* team,
+             BrickTeam::Make make, Progress& progress);
+
+  /// Makes the bricks that no file has.
+  void make(const std::vector<BrickTask>& tasks);
+  /// Makes all bricks once, without a halo.
+  void make_all();
+  /// Makes bricks again without coarsening their boundary, since it meets that of others, until none do.
+  /// \param meeting finds them, see meeting_parts()
+  /// \return how many bricks were made again
+  std::size_t separate(const std::function<std::vector<std::size_t>()>& meeting);
+
+  std::vector<BrickBorder>& borders() { return borders_; }
+
+ private:
+  BrickStore& store_;
+  std::vector<std::size_t> work_;
+  unsigned workers_;
+  BrickTeam* team_;
+  BrickTeam::Make make_;
+  Progress& progress_;
+  std::vector<BrickBorder> borders_;
+  std::vector<std::uint8_t> kept_;  ///< by brick: made again by separate()
+};
+
+}  // namespace tetwright

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mesher/domain/material_field.h"
+#include "tetwright/mesher_input.h"
+#include "tetwright/prepare_steps.h"
+#include "tools/bricks/brick_estimate.h"
+#include "tools/bricks/brick_store.h"
+#include "tools/bricks/gathered_mesh.h"
+
+namespace tetwright {
+
+/// The bricks of a store whose boundaries meet (meeting_parts()).
+std::vector<std::size_t> meeting_in(const BrickStore& store);
+
+/// A job in several rounds.
+struct RoundsJob {
+  const LabelInput& labels;
+  double cell;  ///< edge of a finest cell, input units
+  const BrickPlan& plan;
+  double density;  ///< final tets per volume, input units
+  const CoarsenOptions& coarsening;
+  std::shared_ptr<const MaterialField> field;
+};
+
+/// Carries out the rounds after the first, in this process alone, and joins the parts of the last one.
+/// \param first the parts of the first round; moved out of memory
+/// \param names of the materials
+/// \return no bricks meet
+/// \throws Interrupted, OutOfTime, OutputError
+GatheredMesh coarsen_again(BrickStore& first, const RoundsJob& job, std::map<MaterialTag, std::string> names,
+                           PrepareRun& run);
+
+}  // namespace tetwright
