@@ -70,21 +70,24 @@ FaceAreas face_areas(const LabelInput& labels) {
   return areas;
 }
 
-BoxFaces faces_of_boxes(const LabelInput& labels, const std::array<double, 3>& box) {
+BoxFaces faces_of_boxes(const LabelInput& labels, const std::array<double, 3>& box, double offset) {
   BoxFaces faces;
-  for (int a = 0; a < 3; ++a) faces.boxes[a] = static_cast<std::size_t>((labels.size[a] - 1) / box[a]) + 1;
+  const auto box_at = [&](int voxel, std::size_t axis) {
+    return static_cast<std::size_t>(voxel / box[axis] + offset);
+  };
+  for (std::size_t a = 0; a < 3; ++a) faces.boxes[a] = box_at(labels.size[a] - 1, a) + 1;
   const std::size_t nx = faces.boxes[0], in_layer = nx * faces.boxes[1];
   const auto slices = static_cast<std::size_t>(labels.size[2]);
   std::vector<std::vector<std::size_t>> of_slices(slices);
   parallel_for(0, slices, LabelGrains::slices, [&](std::size_t begin, std::size_t end) {
     for (std::size_t z = begin; z < end; ++z) of_slices[z].assign(in_layer, 0);
     for_each_face(labels, begin, end, [&](std::size_t z, int x, int y, int, bool) {
-      ++of_slices[z][static_cast<std::size_t>(y / box[1]) * nx + static_cast<std::size_t>(x / box[0])];
+      ++of_slices[z][box_at(y, 1) * nx + box_at(x, 0)];
     });
   });
   faces.counts.assign(in_layer * faces.boxes[2], 0);
   for (std::size_t z = 0; z < slices; ++z) {
-    const std::size_t first = static_cast<std::size_t>(static_cast<double>(z) / box[2]) * in_layer;
+    const std::size_t first = box_at(static_cast<int>(z), 2) * in_layer;
     for (std::size_t b = 0; b < in_layer; ++b) faces.counts[first + b] += of_slices[z][b];
   }
   return faces;

@@ -30,6 +30,7 @@ struct BoxFaces {
 
 /// Parallel.
 /// \param box voxels along each axis
-BoxFaces faces_of_boxes(const LabelInput& labels, const std::array<double, 3>& box);
+/// \param offset by which the first box begins before the volume, boxes
+BoxFaces faces_of_boxes(const LabelInput& labels, const std::array<double, 3>& box, double offset = 0);
 
 }  // namespace tetwright

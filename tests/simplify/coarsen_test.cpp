@@ -143,8 +143,23 @@ TEST(Coarsen, ATargetMayBeAFraction) {
   EXPECT_LT(after.tets.size(), p.mesh.tets.size() / 4);
 }
 
+TEST(Coarsen, LeavesFewerTetsIfFewerAreAskedFor) {
+  const Part p = part();
+  constexpr double target = 1500;
+  CoarsenOptions options = options_of(p, target);
+  const auto usual = static_cast<double>(coarsen(p.mesh, options).tets.size());
+  options.tets_for_final = 2;
+  const auto fewer = static_cast<double>(coarsen(p.mesh, options).tets.size());
+  // Its bounds stop it before it reaches the number.
+  EXPECT_LT(fewer, 0.85 * usual);
+  EXPECT_GE(fewer, 2 * target);
+}
+
 TEST(Coarsen, WrongOptionsAreRefused) {
   const TetMesh mesh = grid_mesh(2);
+  for (const double wrong :
+       {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+    EXPECT_THROW((void)coarsen(mesh, {.target_tets = 10, .tets_for_final = wrong}), UsageError) << wrong;
   for (const double target : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()})
     EXPECT_THROW((void)coarsen(mesh, {.target_tets = target}), UsageError) << target;
   EXPECT_THROW((void)coarsen(mesh, {.target_tets = 10, .frozen = {1}}), UsageError);

@@ -34,6 +34,8 @@ struct PerItem {
   static constexpr double kept_tet = 30, filed_tet = 10;
   /// A point on a cut while bricks are regrouped.
   static constexpr double cut_point = 100;
+  /// A face of a cut on one side while boundaries of bricks are compared.
+  static constexpr double boundary_face = 100;
 };
 
 /// Faces of the dense surface, and of a cut through it: for each dense tet, and for each squared cell and
@@ -70,6 +72,13 @@ BrickEstimator::BrickEstimator(const LabelInput& labels, const MesherOptions& op
   before_ = PerItem::program + memory.before;
 }
 
+double BrickEstimator::largest_share(int cells, double offset) const {
+  const auto [known, is_new] = shares_.try_emplace({cells, offset}, 0);
+  if (is_new)
+    known->second = faces_of_boxes(labels_, voxels_of_bricks(labels_, cell_, cells), offset).largest_share();
+  return known->second;
+}
+
 BrickEstimator::Needs BrickEstimator::needs(int side, int rounds) const {
   std::array<double, 3> cells;
   double all_cells = 1;
@@ -90,8 +99,7 @@ BrickEstimator::Needs BrickEstimator::needs(int side, int rounds) const {
   const double first_cuts = cuts(0), cut_faces = faces_of_cuts(first_cuts, dense_);
   double coarse = std::min(dense_, coarse_per_final * target_ + coarse_per_cut_face * cut_faces);
   const double faces = faces_per_tet * dense_ * (rounds > 1 ? thinned_share : 1);
-  const double largest =
-      dense_ * faces_of_boxes(labels_, voxels_of_bricks(labels_, cell_, side)).largest_share();
+  const double largest = dense_ * largest_share(side, 0);
   const double grown = std::min(dense_, largest * std::pow(1 + 2.0 * CellTuning::Bricks::halo / side, 3));
   double kept = PerItem::kept_tet * coarse + PerItem::kept_face * faces;
   Needs needs{};
@@ -99,20 +107,23 @@ BrickEstimator::Needs BrickEstimator::needs(int side, int rounds) const {
   needs.alone = PerItem::lattice_tet_of_all * grown + PerItem::tet * largest;
   needs.each = std::max(PerItem::lattice_tet * grown, PerItem::tet * largest);
   needs.scratch = PerItem::filed_tet * coarse + PerItem::filed_face * faces;
-  const double largest_coarse = coarse;
+  double largest_later = 0;
   double cut_points = cut_faces / 4;  // each has two faces, and each face is counted on both sides
   for (int round = 2; round <= rounds; ++round) {
-    // A brick's piece of a part, and the part itself, are there together.
-    const double share = largest / dense_;
+    // A brick's piece of a part and the part itself are there together, from a file also its bytes.
+    const double share = largest_share(side, Rounds::offset[static_cast<std::size_t>(round - 1)]);
+    largest_later = std::max(largest_later, share * coarse);
     needs.later_each = std::max(needs.later_each, share * ((PerItem::tet + 2 * PerItem::kept_tet) * coarse +
-                                                           (scratch_ ? PerItem::kept_face * faces : 0)));
+                                                           (scratch_ ? 2 * PerItem::kept_face * faces : 0)));
     const double area = cuts(Rounds::offset[static_cast<std::size_t>(round - 1)]);
     const double next_faces = faces_of_cuts(area, coarse);
     const double next = std::min(
         coarse, coarse_margin * Rounds::tets_for_final[static_cast<std::size_t>(round - 1)] * target_ +
                     coarse_per_cut_face * next_faces);
-    needs.later_base = std::max(needs.later_base, field_ + PerItem::cut_point * cut_points +
-                                                      (scratch_ ? 0 : kept + PerItem::kept_tet * next));
+    needs.later_base =
+        std::max(needs.later_base, field_ + border_bytes_per_area * first_cuts +
+                                       PerItem::cut_point * cut_points + PerItem::boundary_face * next_faces +
+                                       (scratch_ ? 0 : kept + PerItem::kept_tet * next));
     needs.scratch += PerItem::filed_tet * next;
     // The meshes of the round before are dropped.
     kept += PerItem::kept_tet * (next - coarse);
@@ -120,8 +131,7 @@ BrickEstimator::Needs BrickEstimator::needs(int side, int rounds) const {
     cut_points = next_faces / 4;
   }
   needs.rest = std::max(before_, field_ + PerItem::coarse_tet * coarse + PerItem::face * faces);
-  if (largest > max_tets_to_simplify || coarse > max_tets_to_simplify ||
-      largest / dense_ * largest_coarse > max_tets_to_simplify)
+  if (largest > max_tets_to_simplify || coarse > max_tets_to_simplify || largest_later > max_tets_to_simplify)
     needs.rest = std::numeric_limits<double>::infinity();
   return needs;
 }

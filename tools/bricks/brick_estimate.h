@@ -3,6 +3,8 @@
 
 #include <array>
 #include <cstddef>
+#include <map>
+#include <utility>
 
 #include "tetwright/mesher.h"
 #include "tetwright/mesher_input.h"
@@ -29,8 +31,8 @@ struct BrickEstimate {
   double scratch = 0;  ///< for the files of all bricks
 };
 
-/// Estimates jobs in bricks of a volume. Peaks on foams were between half of the estimate and, where cuts
-/// dominate (64 bricks of 32 cells in a volume of 128^3), 1.9 times as much.
+/// Estimates jobs in bricks of a volume. Not for concurrent use. Peaks on foams were between half of the
+/// estimate and, where cuts dominate (64 bricks of 32 cells in a volume of 128^3), 1.9 times as much.
 class BrickEstimator {
  public:
   /// \param dense tets of the dense mesh
@@ -56,6 +58,9 @@ class BrickEstimator {
     double scratch;
   };
   Needs needs(int cells, int rounds) const;
+  /// Share of the dense mesh in the largest brick.
+  /// \param offset of the grid of bricks, edges
+  double largest_share(int cells, double offset) const;
   double memory(const BrickPlan& plan, const Needs& of) const;
   /// The plan with as many workers as memory and threads allow.
   BrickPlan with_workers(int cells, int rounds, double available) const;
@@ -63,6 +68,7 @@ class BrickEstimator {
   const LabelInput& labels_;
   double cell_, dense_, target_, field_, before_;
   bool scratch_;
+  mutable std::map<std::pair<int, double>, double> shares_;  ///< largest_share(), a pass over all voxels
 };
 
 /// Voxels along each axis of a brick.

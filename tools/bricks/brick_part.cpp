@@ -60,8 +60,7 @@ std::vector<std::uint8_t> flags_of(const TetMesh& mesh, const std::vector<Vec3>&
 }
 
 BrickPart make_brick_part(const BrickMesher& mesher, const CellBox& box, const BrickTask& task,
-                          double density, CoarsenOptions options, double threshold, bool thin,
-                          Progress* progress) {
+                          double density, CoarsenOptions options, double threshold, Progress* progress) {
   BrickPart part;
   part.kept_surface = task.keep_surface;
   BrickMesh made = mesher.mesh(box, task.halo, progress);
@@ -90,7 +89,7 @@ BrickPart make_brick_part(const BrickMesher& mesher, const CellBox& box, const B
         for (const Index p : t.ids) options.frozen[p] = 1;
   part.mesh = coarsen(std::move(dense.mesh), options, nullptr, progress);
   part.flags = flags_of(part.mesh, shared);
-  if (thin) thin_dense_surface(density, part);
+  if (task.thin) thin_dense_surface(density, part);
   std::erase_if(part.mesh.interfaces, [](const InterfaceTriangle& t) { return t.patch == 0; });
   return part;
 }

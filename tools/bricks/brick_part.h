@@ -24,15 +24,15 @@ struct BrickPart {
   static constexpr std::uint8_t shared = 1, on_interface = 2;
 
   /// Boundary and interfaces of the dense mesh, without `cut_faces`; no tets. Thinned if the brick will be
-  /// coarsened again (Thinning).
+  /// coarsened again (BrickTask::thin).
   TetMesh surface;
   std::vector<std::uint8_t> surface_shared;  ///< by point of `surface`: 1 if other bricks may have it
   /// Faces of the dense mesh that belong to a tet of another brick, too, unless they are on its boundary.
   std::vector<InterfaceTriangle> cut_faces;
 
   /// Statistics of the dense mesh, without interfaces but for those of `surface` before it was thinned. Only
-  /// points that no other brick has are counted, and
-  /// the volumes in the histogram are relative to the brick's mean.
+  /// points that no other brick has are counted, and the volumes in the histogram are relative to the
+  /// brick's mean.
   MeshStatistics dense;
   std::size_t leaves = 0, lattice_tets = 0, isolated_vertices = 0;
 };
@@ -43,6 +43,8 @@ struct BrickTask {
   int halo = 0;           ///< as for BrickMesher::mesh()
   /// Do not coarsen the boundary to the outside: it would meet that of another brick.
   bool keep_surface = false;
+  /// Thin the dense surface (BrickRoundsTuning::Surface), since the brick will be coarsened again.
+  bool thin = false;
 };
 
 /// Meshes and coarsens a brick.
@@ -50,11 +52,9 @@ struct BrickTask {
 /// \param density final tets per volume, input units
 /// \param options its target and its frozen points are not used
 /// \param threshold for the statistics, steradians
-/// \param thin whether to thin the dense surface (BrickRoundsTuning::Surface)
 /// \throws Interrupted, OutOfTime
 BrickPart make_brick_part(const BrickMesher& mesher, const CellBox& box, const BrickTask& task,
-                          double density, CoarsenOptions options, double threshold, bool thin,
-                          Progress* progress);
+                          double density, CoarsenOptions options, double threshold, Progress* progress);
 
 /// BrickPart::flags of a coarsened mesh with its interfaces.
 /// \param shared coordinates of the points where it was cut off

@@ -17,12 +17,19 @@ ShiftedBricks::ShiftedBricks(const LabelInput& labels, double cell, int cells, i
     : origin_(labels.origin) {
   const std::array<double, 3> voxels = voxels_of_bricks(labels, cell, cells);
   const double offset = BrickRoundsTuning::offset[static_cast<std::size_t>(round - 1)];
-  to_bricks_ = labels.directions.inverse();
+  // The lattice is right-handed (label_frame()): cuts are counted from the other end of the last axis if the
+  // volume is not.
+  Eigen::Matrix3d steps = labels.directions;
+  if (steps.determinant() < 0) {
+    origin_ += steps.col(2) * (labels.size[2] - 1);
+    steps.col(2) = -steps.col(2);
+  }
+  to_bricks_ = steps.inverse();
   for (int a = 0; a < 3; ++a) {
     to_bricks_.row(a) /= voxels[a];
     counts_[a] = static_cast<std::size_t>(std::max(1.0, std::ceil(labels.size[a] / voxels[a] + offset)));
     // The first voxel's lower side is `offset` bricks into the first brick.
-    origin_ -= labels.directions.col(a) * (0.5 + offset * voxels[a]);
+    origin_ -= steps.col(a) * (0.5 + offset * voxels[a]);
   }
 }
 

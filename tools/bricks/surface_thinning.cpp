@@ -61,25 +61,24 @@ class ThinnedSurface {
   bool find_ring(Index p) {
     ring_.clear();
     around_.clear();
-    std::vector<std::array<Index, 3>>& open = open_;  // face, and the points that follow p in it
-    open.clear();
+    open_.clear();
     bool one_kind = true;
     for_each_face(p, [&](Index f, Index k) {
       const InterfaceTriangle& t = faces_[f];
-      open.push_back({f, t.ids[(k + 1) % 3], t.ids[(k + 2) % 3]});
-      const InterfaceTriangle& first = faces_[open.front()[0]];
+      open_.push_back({f, t.ids[(k + 1) % 3], t.ids[(k + 2) % 3]});
+      const InterfaceTriangle& first = faces_[open_.front()[0]];
       one_kind &= t.material == first.material && t.other == first.other && t.patch == first.patch;
     });
-    if (!one_kind || open.size() < 4) return false;
-    Index at = open.front()[1];
-    for (std::size_t i = 0; i < open.size(); ++i) {
-      const auto found = std::find_if(open.begin() + static_cast<std::ptrdiff_t>(i), open.end(),
+    if (!one_kind || open_.size() < 4) return false;
+    Index at = open_.front()[1];
+    for (std::size_t i = 0; i < open_.size(); ++i) {
+      const auto found = std::find_if(open_.begin() + static_cast<std::ptrdiff_t>(i), open_.end(),
                                       [&](const auto& face) { return face[1] == at; });
-      if (found == open.end()) return false;
-      std::swap(open[i], *found);
+      if (found == open_.end()) return false;
+      std::swap(open_[i], *found);
       ring_.push_back(at);
-      around_.push_back(open[i][0]);
-      at = open[i][2];
+      around_.push_back(open_[i][0]);
+      at = open_[i][2];
     }
     // A point that the ring passes twice would be found twice.
     if (at != ring_.front()) return false;
@@ -112,12 +111,12 @@ class ThinnedSurface {
     for_each_face(ring_[to], [&](Index f, Index) {
       for (const Index q : faces_[f].ids)
         stays &= q == ring_[to] || q == before || q == after ||
-                 !std::binary_search(sorted_.begin(), sorted_.end(), q) || is_around(f);
+                 !std::binary_search(sorted_.begin(), sorted_.end(), q);
     });
-    return stays;
-  }
-  bool is_around(Index face) const {
-    return std::find(around_.begin(), around_.end(), face) != around_.end();
+    if (!stays || !kept_[ring_[to]]) return stays;
+    // A new edge between two points that stay may exist on another surface as well.
+    return std::none_of(ring_.begin(), ring_.end(),
+                        [&](Index q) { return q != ring_[to] && q != before && q != after && kept_[q]; });
   }
 
   /// Whether the faces after the collapse of p to ring_[to] are near all points removed so far.

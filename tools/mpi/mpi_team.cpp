@@ -33,7 +33,7 @@ enum Tag : int {
 };
 
 using Job = std::array<std::int64_t, 1>;     ///< hash
-using Answer = std::array<std::int64_t, 3>;  ///< the members of a BrickTask
+using Answer = std::array<std::int64_t, 4>;  ///< the members of a BrickTask
 using Size = std::array<std::int64_t, 2>;    ///< brick and number of bytes
 constexpr std::int64_t no_brick = -1;
 
@@ -175,7 +175,8 @@ MpiTeam::MpiTeam() {
 }
 
 void MpiTeam::give(int helper, const BrickTask& task) const {
-  send(Answer{static_cast<std::int64_t>(task.brick), task.halo, task.keep_surface}, helper, answer);
+  send(Answer{static_cast<std::int64_t>(task.brick), task.halo, task.keep_surface, task.thin}, helper,
+       answer);
 }
 
 void MpiTeam::lead(const std::vector<BrickTask>& tasks, const Make& make, const Receive& receive) {
@@ -223,7 +224,7 @@ void MpiTeam::end() {
       progress_->throw_if_stopped();
       std::this_thread::sleep_for(between_looks);
     }
-    send(Answer{no_brick, 0, 0}, waiting_.front(), answer);
+    send(Answer{no_brick, 0, 0, 0}, waiting_.front(), answer);
     waiting_.pop_front();
   }
 }
@@ -233,10 +234,10 @@ void MpiTeam::help(const Make& make) {
   for (;;) {
     send(Job{static_cast<std::int64_t>(job_)}, 0, ask);
     wait_for(0, answer);
-    const auto [brick, halo, keep_surface] = receive_numbers<Answer>(0, answer);
+    const auto [brick, halo, keep_surface, thin] = receive_numbers<Answer>(0, answer);
     if (brick == no_brick) return;
-    const std::string data =
-        to_bytes(make({static_cast<std::size_t>(brick), static_cast<int>(halo), keep_surface != 0}));
+    const std::string data = to_bytes(
+        make({static_cast<std::size_t>(brick), static_cast<int>(halo), keep_surface != 0, thin != 0}));
     send(Size{brick, static_cast<std::int64_t>(data.size())}, 0, size);
     send_bytes(data, 0, bytes);
   }

@@ -51,7 +51,7 @@ void BrickRound::make(const std::vector<BrickTask>& tasks) {
     if (std::optional<BrickBorder> border = store_.finished(task))
       borders_[task.brick] = std::move(*border);
     else
-      left.push_back(task);
+      left.emplace_back(task).thin = thin_;
   // Largest first: nobody waits long for the last one.
   std::stable_sort(left.begin(), left.end(),
                    [&](const BrickTask& a, const BrickTask& b) { return work_[a.brick] > work_[b.brick]; });

@@ -20,6 +20,8 @@ class BrickRound {
   /// \param team null: this process alone
   BrickRound(BrickStore& store, std::vector<std::size_t> work, unsigned workers, BrickTeam* team,
              BrickTeam::Make make, Progress& progress);
+  /// Has all bricks made with BrickTask::thin.
+  void thin_surfaces() { thin_ = true; }
 
   /// Makes the bricks that no file has.
   void make(const std::vector<BrickTask>& tasks);
@@ -40,6 +42,7 @@ class BrickRound {
   BrickTeam::Make make_;
   Progress& progress_;
   std::vector<BrickBorder> borders_;
+  bool thin_ = false;
   std::vector<std::uint8_t> kept_;  ///< by brick: made again by separate()
 };
 

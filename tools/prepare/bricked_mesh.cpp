@@ -203,7 +203,9 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double de
                 plan, run.scratch.get(), run);
   if (team) {
     std::string text;
-    for (const auto& [name, value] : job) text.append(name).append("=").append(value).append("\n");
+    // The leader decides about rounds: a member knows neither its memory nor its folder.
+    for (const auto& [name, value] : job)
+      if (name != rounds_option) text.append(name).append("=").append(value).append("\n");
     team->begin(text, run.progress);
   }
   Stages stages(&run.progress);
@@ -225,7 +227,7 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double de
   const bool again = plan.rounds > 1;
   const auto make = [&](const BrickTask& task) {
     return make_brick_part(mesher, boxes[task.brick], task, density, coarsening, run.options.shapes.bound(),
-                           again, &run.progress);
+                           &run.progress);
   };
   if (!leads) {
     team->help(make);
@@ -234,6 +236,7 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double de
   bricks.bricks = boxes.size();
   BrickStore store(boxes, run.scratch.get(), 1, bricks);
   BrickRound round(store, work_in(boxes, faces), plan.workers, team, make, run.progress);
+  if (again) round.thin_surfaces();
   bricks.repeated = make_bricks(mesher, boxes, round.borders(), [&](const std::vector<BrickOrder>& orders) {
     std::vector<BrickTask> tasks;
     tasks.reserve(orders.size());
@@ -254,7 +257,7 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double de
     });
     if (team) team->end();
   } else {
-    bricks.surfaces_kept = round.separate([&] { return meeting_in(store); });
+    bricks.surfaces_kept = round.separate([&] { return meeting_in(store, run.progress); });
     if (team) team->end();
     stages.begin("coarsen again");
     gathered =

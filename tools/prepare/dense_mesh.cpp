@@ -171,9 +171,11 @@ DenseMesh mesh_input(LabelInput& labels, PrepareRun& run) {
         "distance from the dense mesh");
   const BrickOptions& bricks = run.options.bricks;
   if (need.bricks.cells == 0 && (!bricks.scratch.empty() || bricks.rounds > 0))
-    run.progress.announce("the dense mesh fits in memory, so that " +
-                          std::string(bricks.scratch.empty() ? "--brick-rounds" : "--scratch") +
-                          " is not used; --bricks CELLS makes bricks all the same");
+    run.progress.announce("the volume is meshed whole, so that " +
+                          std::string(bricks.scratch.empty() ? "--brick-rounds is"
+                                      : bricks.rounds > 0    ? "--scratch and --brick-rounds are"
+                                                             : "--scratch is") +
+                          " not used; --bricks CELLS makes bricks all the same");
   if (need.bricks.cells > 0)
     return mesh_bricks(std::move(labels), options, static_cast<double>(need.whole.tets), need.bricks, run);
   DenseMesh dense = mesh_labels(labels, options, &run.progress);

@@ -11,10 +11,13 @@
 
 namespace tetwright {
 
-std::vector<std::size_t> meeting_in(const BrickStore& store) {
+std::vector<std::size_t> meeting_in(const BrickStore& store, const Progress& progress) {
   std::vector<PartBoundary> boundaries;
   boundaries.reserve(store.count());
-  for (std::size_t b = 0; b < store.count(); ++b) boundaries.push_back(boundary_of(*store.part(b)));
+  for (std::size_t b = 0; b < store.count(); ++b) {
+    progress.throw_if_stopped();
+    boundaries.push_back(boundary_of(*store.part(b)));
+  }
   return meeting_parts(boundaries);
 }
 
@@ -39,7 +42,7 @@ GatheredMesh coarsen_again(BrickStore& first, const RoundsJob& job, std::map<Mat
         },
         run.progress);
     made.make_all();
-    report.surfaces_kept += made.separate([&] { return meeting_in(*next); });
+    report.surfaces_kept += made.separate([&] { return meeting_in(*next, run.progress); });
     before.drop_meshes();
     last = std::move(next);
   }

@@ -16,7 +16,8 @@
 namespace tetwright {
 
 /// The bricks of a store whose boundaries meet (meeting_parts()).
-std::vector<std::size_t> meeting_in(const BrickStore& store);
+/// \throws Interrupted, OutOfTime
+std::vector<std::size_t> meeting_in(const BrickStore& store, const Progress& progress);
 
 /// A job in several rounds.
 struct RoundsJob {

@@ -49,6 +49,7 @@ class BrickRounds : public Bricks {
 TEST_F(BrickRounds, GiveTheSameBytesByAnyMeans) {
   const std::string once = expected();
   EXPECT_EQ(bricks().at("rounds"), 1);
+  const double coarse_tets = bricks().at("coarse_tets");
   const nlohmann::json dense = read_json(path("s.json")).at("dense");
   ASSERT_EQ(run(call("1", "one.vtu", "--threads 1")).status, 0);
   EXPECT_TRUE(contents(path("one.vtu")) == once);
@@ -59,6 +60,7 @@ TEST_F(BrickRounds, GiveTheSameBytesByAnyMeans) {
     const std::string mesh = contents(path("a.vtu"));
     EXPECT_FALSE(mesh == once);
     EXPECT_EQ(bricks().at("rounds"), std::stoi(rounds));
+    EXPECT_LT(bricks().at("coarse_tets"), 0.8 * coarse_tets);
     nlohmann::json again = read_json(path("s.json")).at("dense"), first = dense;
     for (nlohmann::json* d : {&again, &first}) d->erase("bricks");
     EXPECT_EQ(differences(first, again), std::vector<std::string>());

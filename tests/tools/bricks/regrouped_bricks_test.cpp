@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <set>
+#include <vector>
 
 #include "tests/tools/bricks/cut_meshes.h"
 #include "tetwright/error.h"
@@ -22,7 +24,7 @@ LabelInput voxels() {
   return labels;
 }
 
-/// Parts cut off at a quarter and three quarters, as no round has them.
+/// Parts cut off where no round has cuts.
 std::vector<BrickPart> parts_of(const TetMesh& whole) {
   return cut(whole, 8, [](std::size_t, const Vec3& p) {
     return static_cast<std::size_t>(p.x() > 2) + 2 * static_cast<std::size_t>(p.y() > 4.5) +
@@ -127,6 +129,28 @@ TEST(RegroupedBricks, KeptSurfacesDoNotMove) {
   EXPECT_LT(kept.mesh.tets.size(), all.mesh.tets.size());
   // The border of the volume has patches on two sides only; the others count as a boundary that may meet.
   for (const PlainFace& face : outside(all)) EXPECT_EQ(outside(kept).count(face), 1u);
+}
+
+// The lattice of a left-handed volume begins at the other end of the last axis.
+TEST(ShiftedBricks, CutsOfAllRoundsAreApartForBothHands) {
+  constexpr int size = 80, side = 32;
+  for (const bool left_handed : {false, true}) {
+    LabelInput labels;
+    labels.size = {size, size, size};
+    if (left_handed) labels.directions(2, 2) = -1;
+    std::vector<double> cuts;
+    for (int k = side; k < size; k += side) cuts.push_back(left_handed ? size - k : k);
+    for (int round = 2; round <= 3; ++round) {
+      const ShiftedBricks bricks(labels, 1, side, round);
+      const auto at = [&](double from_start) {
+        return bricks.brick_at(Vec3(0, 0, (left_handed ? -1 : 1) * (from_start - 0.5)));
+      };
+      for (double z = 0.25; z < size - 1; z += 0.5)
+        if (at(z) != at(z + 0.5))
+          for (const double other : cuts) EXPECT_GE(std::fabs(z + 0.25 - other), side / 4.0) << round << z;
+      EXPECT_NE(at(0.25), at(size - 0.25));
+    }
+  }
 }
 
 }  // namespace
