@@ -71,6 +71,14 @@ def same_bytes():
             expect(json.load(f)["dense"]["bricks"]["count"] >= 8, "there are fewer than eight bricks")
 
 
+def rounds():
+    subprocess.run([program, *job("rounds.vtu", "--brick-rounds", "2")], check=True)
+    expect(content("rounds.vtu") != content("alone.vtu"), "a second round changes nothing")
+    status, _, err = run(3, *job("3.vtu", "--brick-rounds", "2"))
+    expect(status == 0, f"two rounds end with {status}: {err}")
+    expect(content("3.vtu") == content("rounds.vtu"), "two rounds give other bytes with three ranks")
+
+
 def errors():
     for arguments, expected, said in (
             (job("x.vtu")[:1] + ["missing.nrrd"] + job("x.vtu")[2:], 3, "missing.nrrd"),
@@ -115,6 +123,7 @@ with tempfile.TemporaryDirectory() as folder:
     subprocess.run([program, "sample", "foam", "--voxels", voxels, "--grains", grains, "-o", "foam.nrrd", "--quiet"],
                    check=True)
     same_bytes()
+    rounds()
     errors()
     killed_rank(0)
     killed_rank(2)

@@ -35,7 +35,7 @@ void check_images_meet(const ValueInputs& inputs, const Box3& box, const std::ve
 /// Box of a scan: its surfaces, or all voxels.
 Box3 box_of_scan(const ScanInput& input);
 
-/// Tags of the materials of a volume; empty for surfaces.
+/// Tags of the labels of a volume, not of bodies in it; empty for surfaces.
 std::vector<MaterialTag> materials_of_scan(const ScanInput& input);
 
 /// Keeps the labels of a segmented volume for ValueOptions::own_label.
