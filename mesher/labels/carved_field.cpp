@@ -147,7 +147,8 @@ class CarvedField::Sampler final : public FieldSampler {
     bodies_->values_and_gradients(point, {&outside, 1}, &value, &slope);
     const double length = slope.norm();
     if (!(length > 0) || layer + value <= 0) return point;
-    const Vec3 along = slope / length, place = point - (layer + value) * along;
+    const Vec3 along = slope / length;
+    Vec3 place = point - (layer + value) * along;
     if (any_protected && is_protected(labels_->nearest(place).region)) return point;
     along_ = along;
     return place;

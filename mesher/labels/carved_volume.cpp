@@ -67,7 +67,8 @@ class VoxelShares {
         morton_encode(static_cast<int>(centre[0]), static_cast<int>(centre[1]), static_cast<int>(centre[2])));
     for (int k = 0; k < count; ++k) {
       const Vec3 size(1.0 / parts_[0], 1.0 / parts_[1], 1.0 / parts_[2]);
-      const Vec3 part(k % parts_[0], k / parts_[0] % parts_[1], k / (parts_[0] * parts_[1]));
+      const int layer = k / (parts_[0] * parts_[1]);
+      const Vec3 part(k % parts_[0], k / parts_[0] % parts_[1], layer);
       const Vec3 low = centre - Vec3::Constant(0.5) + part.cwiseProduct(size);
       const NearestRegion there = nearest(low + 0.5 * size);
       if (there.margin > half_diagonal_ + LabelTuning::Carving::uncertain) {
@@ -76,7 +77,8 @@ class VoxelShares {
       }
       constexpr int n = LabelTuning::Carving::samples;
       for (int i = 0; i < n * n * n; ++i) {
-        const Vec3 cube(i % n, i / n % n, i / (n * n));
+        const int slice = i / (n * n);
+        const Vec3 cube(i % n, i / n % n, slice);
         Vec3 at;  // in this order, which that of arguments is not
         for (double& along : at) along = random.uniform();
         if (const auto body = body_at(low + ((cube + at) / n).cwiseProduct(size)))

@@ -153,8 +153,9 @@ std::optional<Vec3> SurfaceProjection::onto_crease(const Vec3& p, double max_dis
   return nearer(p, {}, max_distance, &ReferenceSurface::onto_crease);
 }
 
-std::optional<Vec3> SurfaceProjection::onto_corner(const Vec3& p, double max_distance) const {
-  return nearer(p, corners_.nearest(p, {}, max_distance), max_distance, &ReferenceSurface::onto_corner);
+std::optional<Vec3> SurfaceProjection::onto_corner(const Vec3& p, double max_distance, bool of_bodies) const {
+  const std::optional<Vec3> own = of_bodies ? std::nullopt : corners_.nearest(p, {}, max_distance);
+  return nearer(p, own, max_distance, &ReferenceSurface::onto_corner);
 }
 
 std::optional<Vec3> SurfaceProjection::nearer(

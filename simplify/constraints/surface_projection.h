@@ -61,7 +61,8 @@ class SurfaceProjection {
   /// The nearest point of a crease of the given surface within `max_distance`.
   std::optional<Vec3> onto_crease(const Vec3& p, double max_distance) const;
   /// The nearest corner, where junction curves end or branch, within `max_distance`.
-  std::optional<Vec3> onto_corner(const Vec3& p, double max_distance) const;
+  /// \param of_bodies only those of the given surface
+  std::optional<Vec3> onto_corner(const Vec3& p, double max_distance, bool of_bodies = false) const;
 
  private:
   /// Whether the given surface itself has the curve that a junction edge or patch border follows.

@@ -53,8 +53,9 @@ Outcome fit_to_crease(Workspace& ws, const BlockRules& rules, float floor) {
   if (rules.surface.projection->lacks_creases(c)) return Outcome::no_candidate;
   const auto on = dimension < 2 && ws.is_on_crease(rules) ? rules.surface.projection->onto_crease(c, reach)
                   : dimension == 1                        ? rules.surface.projection->onto_curve(c, reach)
-                  : dimension == 0                        ? rules.surface.projection->onto_corner(c, reach)
-                                                          : std::nullopt;
+                  : dimension == 0 && ws.may_be_corner(rules)
+                      ? rules.surface.projection->onto_corner(c, reach, rules.first_body_patch() != 0)
+                      : std::nullopt;
   if (!on) return Outcome::no_candidate;
   const Vec3 to = ws.mesh.snap(*on);
   if ((to - c).norm() <= tolerance::flat_patch) return Outcome::no_candidate;

@@ -112,6 +112,12 @@ bool Workspace::is_on_crease(const BlockRules& rules) {
          !rules.surface.projection->lacks_creases(star.centre_position);
 }
 
+bool Workspace::may_be_corner(const BlockRules& rules) {
+  if (rules.first_body_patch() == 0) return true;
+  star.find_curves(rules.first_body_patch(), kinds);
+  return star.dimension_on_bodies(rules.first_body_patch(), kinds) == 0;
+}
+
 bool Workspace::is_crossing(const BlockRules& rules) {
   return !star.frozen && follows_one_crease(rules) && star.dimension_among_labels(kinds) == 1;
 }

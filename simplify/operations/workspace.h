@@ -107,6 +107,8 @@ struct Workspace {
   /// Whether the star's centre is on a crease of a body among labels, neither an end nor a branch of it, and
   /// the given surface has the crease. Fills `kinds`.
   bool is_on_crease(const BlockRules& rules);
+  /// Whether the star's centre may be a corner of a body, and is not only one of curves between labels.
+  bool may_be_corner(const BlockRules& rules);
   /// Whether one curve between labels meets one crease of a body at the star's centre, in a point or in a
   /// common edge. Such a point may move along the crease: voxels do not say exactly where it is. Fills
   /// `kinds`.

@@ -235,7 +235,7 @@ void check_options(Task task, const PrepareOptions& options) {
   const BrickOptions& bricks = options.bricks;
   if (bricks.use == BrickOptions::Use::never && (!bricks.scratch.empty() || bricks.rounds > 0))
     throw UsageError(std::string(bricks.scratch.empty() ? "--brick-rounds" : "--scratch") +
-                     " is for bricks; leave it out, or --bricks off");
+                     " is for bricks; leave out either it or --bricks off");
   if (bricks.rounds < 0 || bricks.rounds > max_brick_rounds)
     throw UsageError("--brick-rounds must be from 1 to " + std::to_string(max_brick_rounds) + ", not " +
                      std::to_string(bricks.rounds));

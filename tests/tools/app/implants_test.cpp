@@ -73,6 +73,29 @@ TEST_F(Implants, AreSimplified) {
   EXPECT_EQ(run("check " + (folder_ / "p.msh")).status, 0);
 }
 
+// The interface of the labels crosses the rim of the face that two boxes share.
+TEST_F(Implants, ContactsAcrossAnInterfaceStayFlat) {
+  const std::string a = box("a.stl", Vec3(5, 5, 5), Vec3(9, 13, 14)),
+                    b = box("b.stl", Vec3(9, 5, 5), Vec3(13, 13, 14));
+  for (const int tets : {3000, 8000}) {
+    const Answer answer =
+        run("prepare " + volume() + " --material a=" + a + " --material b=" + b +
+            " --surface-space RAS --target-tets " + std::to_string(tets) + " -o " + (folder_ / "p.vtu"));
+    EXPECT_EQ(answer.status, 0) << answer.err;
+    const TetMesh mesh = read_tet_mesh(folder_ / "p.vtu").mesh;
+    double off = 0;
+    std::size_t faces = 0;
+    for (const InterfaceTriangle& t : find_interfaces(mesh)) {
+      if (!t.other || mesh.material_names.at(t.material) != "a" || mesh.material_names.at(*t.other) != "b")
+        continue;
+      ++faces;
+      for (const Index p : t.ids) off = std::max(off, std::fabs(mesh.points[p].x() - 9));
+    }
+    EXPECT_GT(faces, 0U);
+    EXPECT_LT(off, 1e-6) << tets;
+  }
+}
+
 // The edges of a box pass an interface of labels at a small angle, and its corners are just beyond it.
 TEST_F(Implants, EdgesThatHardlyCrossAnInterface) {
   LabelVolume ball;
