@@ -208,16 +208,14 @@ struct BrickOptions {
   /// Folder for finished bricks, made if it does not exist: they need no memory until all are finished, and a
   /// job that was stopped goes on from them. Empty: in memory.
   std::string scratch;
-  /// Called once bricks are about to be written to the scratch folder; may be empty.
-  std::function<void()> when_kept;
+  std::function<void()> when_kept;  ///< called before bricks are written to `scratch`; may be empty
   /// Processes that make the bricks together; null: this one alone. Must outlive the call.
   BrickTeam* team = nullptr;
 };
 inline constexpr int min_brick_cells = 32, max_brick_cells = 1024, default_brick_cells = 128;
 inline constexpr int max_brick_rounds = 3;
 
-/// Default of LabelOptions::min_voxels.
-inline constexpr std::size_t default_min_voxels = 8;
+inline constexpr std::size_t default_min_voxels = 8;  ///< of LabelOptions
 
 /// Labels of a segmented volume.
 struct LabelOptions {
@@ -390,16 +388,14 @@ struct CoarserCells {
 
 /// How a segmented volume was meshed in bricks.
 struct BrickReport {
-  int cells = 0;           ///< edge of a brick, finest cells before any are halved
-  std::size_t bricks = 0;  ///< number of bricks
-  /// How often the volume was coarsened before it was simplified whole, each time in other bricks.
-  int rounds = 1;
-  std::size_t repeated = 0;  ///< times that a brick was made again with more cells around it
-  /// Bricks made again without coarsening their boundary, since it met that of another one.
-  std::size_t surfaces_kept = 0;
-  std::size_t resumed = 0;      ///< bricks that were finished before
-  std::size_t coarse_tets = 0;  ///< tets of all coarsened bricks
-  double scratch_bytes = 0;     ///< of all bricks' files
+  int cells = 0;                  ///< edge of a brick, finest cells before any are halved
+  std::size_t bricks = 0;         ///< number of bricks
+  int rounds = 1;                 ///< how often they were coarsened, each time in other bricks
+  std::size_t repeated = 0;       ///< times that a brick was made again with more cells around it
+  std::size_t surfaces_kept = 0;  ///< bricks made again with their boundary as it is, since it met another's
+  std::size_t resumed = 0;        ///< bricks of all rounds that were finished before
+  std::size_t coarse_tets = 0;    ///< tets of all coarsened bricks
+  double scratch_bytes = 0;       ///< of all bricks' files
 };
 
 /// Report of a run. Members that belong to steps which are not run stay empty.
