@@ -60,10 +60,13 @@ TEST(LabelThreads, TheSameOnOneAndOnEight) {
   LabelInput labels;
   labels.size = {60, 48, 48};
   labels.materials = {{"a", 1, 1, 1}, {"b", 2, 1, 1}};
+  std::vector<RegionIndex> regions;
   for (int z = 0; z < 48; ++z)
     for (int y = 0; y < 48; ++y)
       for (int x = 0; x < 60; ++x)
-        labels.regions.push_back(static_cast<RegionIndex>((x / 7 + y / 5 + z / 6) % 3));
+        regions.push_back(static_cast<RegionIndex>((x / 7 + y / 5 + z / 6) % 3));
+  labels.regions = RegionGrid(labels.size);
+  labels.regions.write_slices(0, regions);
   const auto keys_with = [&](unsigned threads) {
     const ThreadLimit limit(threads);
     const GridFrame frame = label_frame(labels, 1, false);
