@@ -63,8 +63,7 @@ TEST(LabelThreads, TheSameOnOneAndOnEight) {
   std::vector<RegionIndex> regions;
   for (int z = 0; z < 48; ++z)
     for (int y = 0; y < 48; ++y)
-      for (int x = 0; x < 60; ++x)
-        regions.push_back(static_cast<RegionIndex>((x / 7 + y / 5 + z / 6) % 3));
+      for (int x = 0; x < 60; ++x) regions.push_back(static_cast<RegionIndex>((x / 7 + y / 5 + z / 6) % 3));
   labels.regions = RegionGrid(labels.size);
   labels.regions.write_slices(0, regions);
   const auto keys_with = [&](unsigned threads) {
