@@ -23,6 +23,7 @@
 #include "mesher/labels/border_sides.h"
 #include "mesher/labels/carved_field.h"
 #include "mesher/labels/carved_volume.h"
+#include "mesher/labels/label_films.h"
 #include "mesher/level_sets/field_solid.h"
 #include "mesher/materials_left.h"
 #include "mesher/mesh_estimate.h"
@@ -160,6 +161,7 @@ class SurfaceMeshing {
       body_cells_ = cells_of_thin_bodies(input_, voxels_, options_.refinement_regions,
                                          std::min(budget_.max_depth, budget_.max_possible), budget_.max_tets);
     features_ = find_features(input_, options_, report_.cell_size, body_cells_.sizes);
+    if (volume_) add_cells_of_films();
     build_distances();
     report_.seconds_sdf = stages_.seconds();
     report_.loops_sdf = stages_.loops();
@@ -243,6 +245,18 @@ class SurfaceMeshing {
     validate_estimate(report_.estimate);
   }
 
+  /// Smaller cells in a volume where bodies, or what they leave of labels, are thin.
+  void add_cells_of_films() {
+    if (budget_.max_depth == 0) return;
+    std::vector<RefinementRegion> asked =
+        find_films(input_, features_.bodies, *labels_,
+                   LabelTuning::Carving::max_layer * voxel_size(volume_->labels) / voxels_.cell_size);
+    asked.insert(asked.end(), options_.refinement_regions.begin(), options_.refinement_regions.end());
+    body_cells_.cells =
+        cells_of_thin_bodies(input_, voxels_, std::move(asked),
+                             std::min(budget_.max_depth, budget_.max_possible), budget_.max_tets)
+            .cells;
+  }
   /// Combines bodies with the volume around them.
   void carve_volume() {
     field_ = CarvedField::make(labels_, bodies_.field, protected_regions(*volume_), layer_around_bodies(),

@@ -105,6 +105,19 @@ struct LabelTuning {
     static constexpr double far_beyond = 4;
   };
 
+  /// Labels of which bodies leave a film.
+  struct Films {
+    /// Cells: one across a film, so that its tets are as high as they are wide.
+    static constexpr double max_thickness = 1;
+    /// Steps along the normal in which the thickness is measured.
+    static constexpr int steps = 8;
+    /// Min distance from the interface, as a share of the thickness along the normal: a wedge of more than
+    /// some 35 degrees is no film, and smaller cells would only resolve what coarse ones snap.
+    static constexpr double min_parallel = 0.8;
+    /// Positions along a crease, cells, at which an interface must be near if it runs along the crease.
+    static constexpr double beside[] = {-1, 0, 1};
+  };
+
   /// The border of a volume with bodies.
   struct Border {
     /// Cells between bodies and the end of the lattice below which it continues beyond the border, and then

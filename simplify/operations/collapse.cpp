@@ -52,7 +52,7 @@ bool surface_edit(Workspace& ws, const BlockRules& rules, std::size_t b) {
   const Star& star = ws.star;
   SurfaceGrid::Edit& edit = ws.proposal.edit;
   edit.clear();
-  if (rules.keeps_curves(star) && star.edge_dimension(b) == 1)
+  if (rules.keeps_curves(star) && (star.edge_dimension(b) == 1 || star.dimension() == 1))
     for (const std::size_t p : ws.bounded_curves(rules))
       if (p != b && !near_crease(rules, star, ws.max_curve_distance(rules, p), p, star.positions[b]))
         return false;
@@ -122,8 +122,21 @@ void propose(Workspace& ws, std::size_t b) {
   }
 }
 
+/// Whether the strip between a curve between labels and a crease at link point b is narrow for the curve.
+/// \pre Workspace::is_beside_creases()
+bool is_narrow_strip(const Workspace& ws, std::size_t b) {
+  const Star& star = ws.star;
+  double longest = 0;
+  for (std::size_t p = 0; p < star.points.size(); ++p)
+    if (ws.kinds[p].between_labels())
+      longest = std::max(longest, (star.positions[p] - star.centre_position).norm());
+  return (star.positions[b] - star.centre_position).norm() <=
+         SimplifyTuning::Features::max_strip_width * longest;
+}
+
 /// Runs all tests but the weight for the target with local number b.
 /// \param crossing Workspace::is_crossing()
+/// \pre an edge of another dimension than the centre's satisfies Workspace::may_merge_with()
 Outcome try_target(Workspace& ws, const BlockRules& rules, std::size_t b, bool crossing) {
   Star& star = ws.star;
   std::vector<float>& qualities = ws.qualities;
@@ -208,6 +221,7 @@ Outcome collapse(Workspace& ws, const BlockRules& rules) {
   const bool crossing = ws.is_crossing(rules);
   const int along = crossing ? 1 : collapsible_edge(vertex_kind(star));
   if (along == never) return Outcome::material_rule;
+  const bool beside_creases = !crossing && ws.is_beside_creases(rules);
   star.compute_normals();
   star.compute_gradients();
 
@@ -216,7 +230,10 @@ Outcome collapse(Workspace& ws, const BlockRules& rules) {
   const double max_error = rules.error.limit(rules.scale_at(star.centre_position));
   Outcome refusal = Outcome::material_rule;
   for (std::size_t p = 0; p < star.points.size(); ++p) {
-    if (star.edge_dimension(p) != along || (crossing && !ws.kinds[p].on_crease())) continue;
+    if (star.edge_dimension(p) != along
+            ? !beside_creases || !is_narrow_strip(ws, p) || !ws.may_merge_with(rules, p)
+            : crossing && !ws.kinds[p].on_crease())
+      continue;
     if (rules.collapse.max_collapsed_edge &&
         (star.positions[p] - star.centre_position).norm() > *rules.collapse.max_collapsed_edge)
       continue;

@@ -109,6 +109,9 @@ struct SimplifyTuning {
     /// Parameters along a segment at which its distance from the feature edges is sampled. Each costs a tree
     /// query.
     static constexpr double segment_parameters[] = {0.25, 0.5, 0.75};
+    /// Max width of a strip between a crease of a body and a curve between labels that is closed, as a share
+    /// of the curve's edges: a wider one has well-shaped triangles.
+    static constexpr double max_strip_width = 0.5;
     /// Min quality of tets, for any objective, when points are fitted to feature edges. Shapes are improved
     /// later.
     static constexpr float fitting_floor = 1e-4f;

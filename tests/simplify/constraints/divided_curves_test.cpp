@@ -94,7 +94,7 @@ class Cube : public ReferenceSurface {
 };
 
 TEST(DividedCurves, CreasesAndLabelsKeepTheirOwnTopology) {
-  int crossings = 0, only_divided = 0, pinches = 0, carried_out = 0;
+  int crossings = 0, merges = 0, only_divided = 0, pinches = 0, carried_out = 0, merged = 0;
   const Cube cube;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     Workbench w(cube_among_labels(seed));
@@ -111,10 +111,13 @@ TEST(DividedCurves, CreasesAndLabelsKeepTheirOwnTopology) {
         if (w.mesh.incident_tet(p) == no_index) continue;
         const Star& star = w.star(p);
         const bool crossing = star.dimension() == 0 && w.ws->is_crossing(w.rules);
+        const bool on_curve = star.dimension() == 1;
         const Outcome o = collapse(*w.ws, w.rules);
         if (o == Outcome::done) {
           carried_out += crossing;
           const auto target = std::find(star.points.begin(), star.points.end(), w.ws->proposal.target);
+          merged +=
+              on_curve && star.edge_dimension(static_cast<std::size_t>(target - star.points.begin())) == 2;
           only_divided += !w.ws->link_condition.holds(w.mesh, w.grid, star,
                                                       static_cast<std::size_t>(target - star.points.begin()));
         }
@@ -128,7 +131,9 @@ TEST(DividedCurves, CreasesAndLabelsKeepTheirOwnTopology) {
       const bool crossing = w.ws->is_crossing(w.rules);
       if (dimension == 0 && !crossing) continue;
       for (std::size_t b = 0; b < star.points.size(); ++b) {
-        if (crossing ? !w.ws->kinds[b].on_crease() : star.edge_dimension(b) != dimension) continue;
+        const bool merge = star.edge_dimension(b) != dimension && !crossing &&
+                           w.ws->is_beside_creases(w.rules) && w.ws->may_merge_with(w.rules, b);
+        if (crossing ? !w.ws->kinds[b].on_crease() : star.edge_dimension(b) != dimension && !merge) continue;
         if (!w.ws->link_condition.holds(w.mesh, w.grid, star, b, first_body_patch_of_cube)) continue;
         const Index onto = star.points[b];
         const bool changes = topology(contracted(w.mesh, a, onto)) != before;
@@ -137,12 +142,15 @@ TEST(DividedCurves, CreasesAndLabelsKeepTheirOwnTopology) {
           continue;
         }
         crossings += crossing;
+        merges += merge;
         EXPECT_FALSE(changes) << seed << ": " << a << " onto " << onto;
         EXPECT_EQ(creases(w.mesh, w.grid, a, onto), creases_before) << seed << ": " << a << " onto " << onto;
       }
     }
   }
   EXPECT_GT(crossings, 0);
+  EXPECT_GT(merges, 0);
+  EXPECT_GT(merged, 0);
   EXPECT_GT(only_divided, 0);
   EXPECT_GT(carried_out, 0);
   EXPECT_GT(pinches, 0);  // may_cross_at() is needed

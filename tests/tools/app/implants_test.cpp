@@ -65,6 +65,42 @@ TEST_F(Implants, CarveLabels) {
   EXPECT_EQ(read_tet_mesh(folder_ / "out.vtu").mesh.material_names.at(8), "implant");
 }
 
+TEST_F(Implants, CarveMasks) {
+  EXPECT_EQ(mesh(volume() + " --material implant=" + block() + " --surface-space RAS", "labels.vtu").status,
+            0);
+  const auto of_labels = volumes();
+  for (const int label : {3, 7}) {
+    LabelVolume mask = read_label_volume(folder_ / "labels.nrrd");
+    for (MaterialTag& v : mask.labels) v = v == label ? 1 : 0;
+    write_label_volume(mask, folder_ / ("label_" + std::to_string(label) + ".nrrd"));
+  }
+  EXPECT_EQ(mesh((folder_ / "label_3.nrrd") + " " + (folder_ / "label_7.nrrd") +
+                 " --material implant=" + block() + " --surface-space RAS")
+                .status,
+            0);
+  EXPECT_EQ(volumes(), of_labels);
+}
+
+TEST_F(Implants, CarveImages) {
+  // A ball of radius 7, by its distance.
+  std::string values;
+  for (int z = 0; z < 20; ++z)
+    for (int y = 0; y < 20; ++y)
+      for (int x = 0; x < 20; ++x) {
+        const auto d = static_cast<float>(7 - (Vec3(x, y, z) - Vec3::Constant(9.5)).norm());
+        values.append(reinterpret_cast<const char*>(&d), sizeof d);
+      }
+  write_file_atomically(folder_ / "ball.raw", values);
+  const Answer a =
+      mesh((folder_ / "ball.raw") +
+           " --dimensions 20,20,20 --voxel-type float32 --spacing 1,1,1 --iso ball=0 --material implant=" +
+           block());
+  EXPECT_EQ(a.status, 0) << a.err;
+  const auto is = volumes();
+  EXPECT_NEAR(is.at("implant"), block_volume, 1e-4 * block_volume);
+  EXPECT_NEAR(is.at("implant") + is.at("ball"), 4.0 / 3 * M_PI * 343, 0.02 * 4.0 / 3 * M_PI * 343);
+}
+
 TEST_F(Implants, AreSimplified) {
   const Answer a = run("prepare " + volume() + " " + block() + " --surface-space RAS --target-tets 3000 -o " +
                        (folder_ / "p.msh") + " --stats " + (folder_ / "s.json"));
@@ -128,6 +164,25 @@ TEST_F(Implants, EdgesThatHardlyCrossAnInterface) {
       }
     }
     EXPECT_LT(off, 0.01) << tets;
+  }
+}
+
+// A face of a box is less than a voxel from a parallel interface of labels, which lies at x = 11.5.
+TEST_F(Implants, FacesCloseToAnInterface) {
+  LabelVolume halves;
+  halves.size = {24, 20, 20};
+  halves.space = "right-anterior-superior";
+  for (int i = 0; i < 24 * 20 * 20; ++i) halves.labels.push_back(i % 24 < 12 ? 1 : 2);
+  write_label_volume(halves, folder_ / "halves.nrrd");
+  for (const double gap : {0.05, 0.2, 0.4, 0.7}) {
+    const Answer a = run("prepare " + (folder_ / "halves.nrrd") +
+                         " --material box=" + box("b.stl", {11.5 + gap, 5.5, 5.5}, {17.5, 13.5, 14.5}) +
+                         " --surface-space RAS --target-tets 6000 -o " + (folder_ / "p.vtu") + " --stats " +
+                         (folder_ / "s.json"));
+    EXPECT_EQ(a.status, 0) << gap << a.err;
+    EXPECT_LT(stats().at("result").at("percent_below_threshold"), 1) << gap;
+    EXPECT_GT(stats().at("result").at("min_dihedral"), 8) << gap;
+    EXPECT_EQ(stats().at("creases").at("lost_corners"), 0) << gap;
   }
 }
 
