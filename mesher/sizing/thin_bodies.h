@@ -17,7 +17,8 @@ struct BodySizes {
   std::vector<double> sizes;  ///< of the cells at each body, input units
 };
 
-/// Halves cells along the surfaces of bodies in a volume that are thin for the cells of its labels.
+/// Halves cells along the surfaces of bodies in a volume that are thin, or small and round, for the cells of
+/// its labels.
 /// \param asked points around which cells are halved as well, input units
 /// \param max_depth, max_tets as for find_narrow_patches()
 BodySizes cells_of_thin_bodies(const MesherInput& bodies, const GridFrame& voxels,

@@ -165,6 +165,12 @@ struct CellTuning {
     /// Cells for the mean thickness of a body in a volume, which is twice its volume by its area: four across
     /// a plate, eight across a rod. With half as many, edges that cross interfaces of labels are not exact.
     static constexpr double cells_of_body = 4;
+    /// The same for a body without sharp edges, whose points are not fitted to its surface: cells cut 4 % off
+    /// a ball of three, and 1 % off one of six.
+    static constexpr double cells_of_smooth_body = 8;
+    /// Sharp edges turn by more than this, radians; a smooth body has at most this share of its curvature at
+    /// them.
+    static constexpr double sharp_turn = 0.52, max_sharp_share = 0.05;
     static constexpr double corner_reach = 1;  ///< cells: turns within this distance are not corners
     /// Distance, cells, from a curve where three regions meet within which creases are not reported, and max
     /// distance of a reported crease from a visible surface: such curves are accurate to half a cell only.

@@ -186,6 +186,20 @@ TEST_F(Implants, FacesCloseToAnInterface) {
   }
 }
 
+// Cells of a voxel would cut 4 % off.
+TEST_F(Implants, SmallBallsKeepTheirVolume) {
+  constexpr double radius = 4.3;
+  write_surface(make_sphere(radius, Vec3(9.2, 9.7, 9.4)), folder_ / "ball.stl");
+  const Answer a = run("prepare " + volume() + " --material ball=" + (folder_ / "ball.stl") +
+                       " --surface-space RAS --target-tets 6000 -o " + (folder_ / "p.vtu") + " --stats " +
+                       (folder_ / "s.json"));
+  EXPECT_EQ(a.status, 0) << a.err;
+  EXPECT_LT(stats().at("result").at("percent_below_threshold"), 0.5);
+  const double whole = 4.0 / 3 * M_PI * std::pow(radius, 3);
+  for (const nlohmann::json& m : stats().at("result").at("materials"))
+    if (m.at("name") == "ball") EXPECT_NEAR(m.at("volume"), whole, 0.01 * whole);
+}
+
 TEST_F(Implants, ProtectedLabelsStay) {
   const std::string words = volume() + " --material implant=" + block() + " --surface-space RAS ";
   for (const char* list : {"--protect-labels 7", "--protect-labels 5-9", "--protect-labels label_7"}) {
