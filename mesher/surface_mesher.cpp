@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/message_text.h"
+#include "common/parallel/parallel_sort.h"
 #include "common/tolerances.h"
 #include "mesher/body_field.h"
 #include "mesher/complex/labelled_complex.h"
@@ -245,17 +246,23 @@ class SurfaceMeshing {
     validate_estimate(report_.estimate);
   }
 
-  /// Smaller cells in a volume where bodies, or what they leave of labels, are thin.
+  /// Smaller cells where bodies leave films of labels, as far as the budget allows after those along bodies.
   void add_cells_of_films() {
-    if (budget_.max_depth == 0) return;
-    std::vector<RefinementRegion> asked =
+    const int max_depth = std::min(budget_.max_depth, budget_.max_possible);
+    if (max_depth == 0) return;
+    using Films = LabelTuning::Films;
+    const double layer = layer_around_bodies();
+    const bool everywhere = volume_->protected_labels.empty();  // the layer
+    const std::vector<RefinementRegion> films =
         find_films(input_, features_.bodies, *labels_,
-                   LabelTuning::Carving::max_layer * voxel_size(volume_->labels) / voxels_.cell_size);
-    asked.insert(asked.end(), options_.refinement_regions.begin(), options_.refinement_regions.end());
-    body_cells_.cells =
-        cells_of_thin_bodies(input_, voxels_, std::move(asked),
-                             std::min(budget_.max_depth, budget_.max_possible), budget_.max_tets)
-            .cells;
+                   {layer, everywhere ? Films::min_share_of_layer * layer : Films::min_without_layer,
+                    options_.keep_outside},
+                   stages_.progress());
+    NarrowPatches cells = cells_around(films, voxels_, max_depth, budget_.base_tets);
+    body_cells_.cells.finer = combine(std::move(body_cells_.cells.finer), std::move(cells.finer));
+    std::vector<MortonKey>& voxels = body_cells_.cells.voxels;
+    voxels.insert(voxels.end(), cells.voxels.begin(), cells.voxels.end());
+    parallel_sort_unique(voxels);
   }
   /// Combines bodies with the volume around them.
   void carve_volume() {

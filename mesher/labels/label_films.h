@@ -6,22 +6,29 @@
 #include "mesher/labels/label_field.h"
 #include "tetwright/mesher.h"
 #include "tetwright/mesher_input.h"
+#include "tetwright/progress.h"
 #include "tetwright/surface_mesh.h"
 
 namespace tetwright {
 
-/// Finds where interfaces of labels are less than a cell from bodies, so that cells must be halved.
-///
-/// Between a body's surface and an interface, or the border of the volume, measured along the outer normal,
-/// the body leaves a film of a label; cells are halved until one fits into it. Films thinner than `layer` are
-/// left to the layer around bodies (CarvedField), but where they end at creases, along which interfaces run
-/// there, cells are halved until they are as small as the layer. Parallel over triangles.
+/// What find_films() knows of the surroundings of bodies. Lengths are in cells of the unrefined frame.
+struct FilmOptions {
+  double layer;       ///< thickness of the layer around bodies, see CarvedField; cells become no smaller
+  double min_film;    ///< thinner films are left to that layer
+  bool keep_outside;  ///< the outside is meshed, so that its films count
+};
+
+/// Finds films: where a body's outer side is less than a cell from a nearly parallel interface of labels, or
+/// from the border of the volume. Cells must be halved there until one fits between them. The same holds
+/// along creases that an interface follows within the layer, since a film ends there. Parallel over triangles
+/// and creases.
 /// \param patches of each body
 /// \param labels unrefined
-/// \param layer voxels of the frame
-/// \return points along surfaces and creases
+/// \param progress may be null
+/// \return points along surfaces, interfaces and creases
+/// \throws Interrupted
 std::vector<RefinementRegion> find_films(const MesherInput& bodies,
                                          const std::vector<SurfacePatches>& patches, const LabelField& labels,
-                                         double layer);
+                                         const FilmOptions& options, const Progress* progress);
 
 }  // namespace tetwright

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/features/edge_uses.h"
+#include "mesher/sizing/triangle_points.h"
 #include "mesher/tuning/cell_tuning.h"
 
 namespace tetwright {
@@ -15,24 +16,11 @@ namespace {
 /// Adds points of a surface, each within about `spacing` of others.
 void add_surface(const RepairedSurface& surface, double spacing, int halvings,
                  std::vector<RefinementRegion>& regions) {
-  for (const Triangle& t : surface.triangles) {
-    // From an end of the shortest edge, so that narrow triangles have few rows of points.
-    std::size_t first = 0;
-    const auto edge = [&](std::size_t k) -> Vec3 {
-      return surface.points[t[(k + 1) % 3]] - surface.points[t[k]];
-    };
-    for (std::size_t k = 1; k < 3; ++k)
-      if (edge(k).norm() < edge(first).norm()) first = k;
-    const Vec3& a = surface.points[t[first]];
-    const Vec3 along = edge(first), across = -edge((first + 2) % 3);
-    const auto steps = [&](const Vec3& e) {
-      return std::max(1, static_cast<int>(std::ceil(e.norm() / spacing)));
-    };
-    const int n = steps(along), m = steps(across);
-    for (int i = 0; i <= n; ++i)
-      for (int k = 0; 1.0 * k * n <= 1.0 * (n - i) * m; ++k)
-        regions.push_back({a + along * i / n + across * k / m, halvings});
-  }
+  for (const Triangle& t : surface.triangles)
+    for_each_point({surface.points[t[0]], surface.points[t[1]], surface.points[t[2]]}, spacing,
+                   [&](const Vec3& point) {
+                     regions.push_back({point, halvings});
+                   });
 }
 
 /// Whether hardly any of a surface's curvature (length of edges times their turns) is at sharp edges.

@@ -12,6 +12,7 @@ struct LabelGrains {
   static constexpr std::size_t slices = 8;             ///< each is read with the next one
   static constexpr std::size_t voxels = 1 << 18;       ///< mostly skipped
   static constexpr std::size_t thin_voxels = 1 << 16;  ///< with the cells around each, most of them the same
+  static constexpr std::size_t films = 64;             ///< triangles, each with points all over it
 };
 
 /// Smooth distances of labels between voxel centres; mesher/README.md, Tuned numbers, explains the terms. The
@@ -107,10 +108,13 @@ struct LabelTuning {
 
   /// Labels of which bodies leave a film.
   struct Films {
-    /// Cells: one across a film, so that its tets are as high as they are wide.
+    /// Cells: thicker films have room for a cell.
     static constexpr double max_thickness = 1;
-    /// Steps along the normal in which the thickness is measured.
-    static constexpr int steps = 8;
+    /// Min thickness as a share of the layer around bodies, so that no film is left to neither, and where
+    /// there is no such layer, cells: thinner films would need more halvings than there are.
+    static constexpr double min_share_of_layer = 0.95, min_without_layer = 0.02;
+    /// Steps along the normal in which the other side is looked for, and bisections of the one that has it.
+    static constexpr int steps = 8, bisections = 6;
     /// Min distance from the interface, as a share of the thickness along the normal: a wedge of more than
     /// some 35 degrees is no film, and smaller cells would only resolve what coarse ones snap.
     static constexpr double min_parallel = 0.8;

@@ -123,7 +123,7 @@ void propose(Workspace& ws, std::size_t b) {
 }
 
 /// Whether the strip between a curve between labels and a crease at link point b is narrow for the curve.
-/// \pre Workspace::is_beside_creases()
+/// \pre Workspace::is_on_label_curve()
 bool is_narrow_strip(const Workspace& ws, std::size_t b) {
   const Star& star = ws.star;
   double longest = 0;
@@ -221,7 +221,7 @@ Outcome collapse(Workspace& ws, const BlockRules& rules) {
   const bool crossing = ws.is_crossing(rules);
   const int along = crossing ? 1 : collapsible_edge(vertex_kind(star));
   if (along == never) return Outcome::material_rule;
-  const bool beside_creases = !crossing && ws.is_beside_creases(rules);
+  const bool on_label_curve = !crossing && ws.is_on_label_curve(rules);
   star.compute_normals();
   star.compute_gradients();
 
@@ -231,7 +231,7 @@ Outcome collapse(Workspace& ws, const BlockRules& rules) {
   Outcome refusal = Outcome::material_rule;
   for (std::size_t p = 0; p < star.points.size(); ++p) {
     if (star.edge_dimension(p) != along
-            ? !beside_creases || !is_narrow_strip(ws, p) || !ws.may_merge_with(rules, p)
+            ? !on_label_curve || !is_narrow_strip(ws, p) || !ws.may_merge_with(rules, p)
             : crossing && !ws.kinds[p].on_crease())
       continue;
     if (rules.collapse.max_collapsed_edge &&

@@ -25,7 +25,7 @@ inline constexpr std::uint8_t never = 0;
 /// Dimension of the edge along which a vertex (row) may be collapsed onto another one (column), or `never`:
 /// the removed vertex's own dimension, which keeps it within its material, interface or curve. No end of an
 /// edge has a larger dimension than the edge. Frozen vertices are never removed, but others may collapse onto
-/// them.
+/// them. Among labels of a volume, two more are possible (Workspace::is_crossing(), may_merge_with()).
 inline constexpr std::array<std::array<std::uint8_t, vertex_kind_count>, vertex_kind_count> collapse_table{{
     // onto interior, interface, junction_curve, corner, frozen
     {3, 3, 3, 3, 3},                      // interior

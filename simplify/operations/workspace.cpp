@@ -129,10 +129,12 @@ bool Workspace::may_cross_at(const BlockRules& rules, std::size_t b) {
   return target_star.dimension_among_labels(target_kinds) == 2;
 }
 
-bool Workspace::is_beside_creases(const BlockRules& rules) {
-  if (rules.first_body_patch() == 0 || star.frozen || star.dimension() != 1) return false;
+bool Workspace::is_on_label_curve(const BlockRules& rules) {
+  if (rules.first_body_patch() == 0 || star.dimension() != 1) return false;
   star.find_curves(rules.first_body_patch(), kinds);
-  return std::none_of(kinds.begin(), kinds.end(), [](const CurveKinds& k) { return k.on_crease(); });
+  for (std::size_t p = 0; p < star.points.size(); ++p)
+    if (star.edge_dimension(p) == 1 && !kinds[p].follows_voxels()) return false;
+  return true;
 }
 
 bool Workspace::may_merge_with(const BlockRules& rules, std::size_t b) {
@@ -140,8 +142,7 @@ bool Workspace::may_merge_with(const BlockRules& rules, std::size_t b) {
   if (gather(star.points[b], target_star) != Outcome::done) return false;
   target_star.find_curves(rules.first_body_patch(), target_kinds);
   return target_star.dimension_among_labels(target_kinds) == 2 &&
-         std::any_of(target_kinds.begin(), target_kinds.end(),
-                     [](const CurveKinds& k) { return k.on_crease(); });
+         target_star.dimension_on_bodies(rules.first_body_patch(), target_kinds) == 1;
 }
 
 }  // namespace tetwright

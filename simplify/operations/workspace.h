@@ -117,13 +117,13 @@ struct Workspace {
   /// labels do not lead there, b must lie within a single interface of them.
   /// \pre is_crossing()
   bool may_cross_at(const BlockRules& rules, std::size_t b);
-  /// Whether the star's centre is on a single curve between labels and on no crease. Such a point may merge
-  /// with one on a crease, so that a curve that runs close along a crease leaves no strip between both. Fills
-  /// `kinds`.
-  bool is_beside_creases(const BlockRules& rules);
-  /// Whether link point b is on a crease and within a single interface of labels, so that the centre may
-  /// merge with it.
-  /// \pre is_beside_creases()
+  /// Whether the star's centre is on a single curve between labels that only voxels determine. Such a point
+  /// may merge with one on a crease, so that a curve that runs close along a crease leaves no strip between
+  /// both. Fills `kinds`.
+  bool is_on_label_curve(const BlockRules& rules);
+  /// Whether the centre may merge with link point b: their edge is in an interface, and b on a crease, not at
+  /// its end, and within a single interface of labels.
+  /// \pre is_on_label_curve()
   bool may_merge_with(const BlockRules& rules, std::size_t b);
 
  private:

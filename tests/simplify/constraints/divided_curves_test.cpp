@@ -116,10 +116,17 @@ TEST(DividedCurves, CreasesAndLabelsKeepTheirOwnTopology) {
         if (o == Outcome::done) {
           carried_out += crossing;
           const auto target = std::find(star.points.begin(), star.points.end(), w.ws->proposal.target);
-          merged +=
-              on_curve && star.edge_dimension(static_cast<std::size_t>(target - star.points.begin())) == 2;
-          only_divided += !w.ws->link_condition.holds(w.mesh, w.grid, star,
-                                                      static_cast<std::size_t>(target - star.points.begin()));
+          const auto onto = static_cast<std::size_t>(target - star.points.begin());
+          if (on_curve && star.edge_dimension(onto) == 2) {
+            ++merged;
+            double longest = 0;
+            for (std::size_t q = 0; q < star.points.size(); ++q)
+              if (star.edge_dimension(q) == 1)
+                longest = std::max(longest, (star.positions[q] - star.centre_position).norm());
+            EXPECT_LE((star.positions[onto] - star.centre_position).norm(), 0.5 * longest);
+          } else {
+            only_divided += !w.ws->link_condition.holds(w.mesh, w.grid, star, onto);
+          }
         }
         w.carry_out(o);
       }
@@ -132,7 +139,7 @@ TEST(DividedCurves, CreasesAndLabelsKeepTheirOwnTopology) {
       if (dimension == 0 && !crossing) continue;
       for (std::size_t b = 0; b < star.points.size(); ++b) {
         const bool merge = star.edge_dimension(b) != dimension && !crossing &&
-                           w.ws->is_beside_creases(w.rules) && w.ws->may_merge_with(w.rules, b);
+                           w.ws->is_on_label_curve(w.rules) && w.ws->may_merge_with(w.rules, b);
         if (crossing ? !w.ws->kinds[b].on_crease() : star.edge_dimension(b) != dimension && !merge) continue;
         if (!w.ws->link_condition.holds(w.mesh, w.grid, star, b, first_body_patch_of_cube)) continue;
         const Index onto = star.points[b];

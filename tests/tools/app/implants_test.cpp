@@ -167,17 +167,17 @@ TEST_F(Implants, EdgesThatHardlyCrossAnInterface) {
   }
 }
 
-// A face of a box is less than a voxel from a parallel interface of labels, which lies at x = 11.5.
+// A face of a box is less than a voxel from a parallel interface of labels, which lies at x = 7.5.
 TEST_F(Implants, FacesCloseToAnInterface) {
   LabelVolume halves;
-  halves.size = {24, 20, 20};
+  halves.size = {16, 14, 14};
   halves.space = "right-anterior-superior";
-  for (int i = 0; i < 24 * 20 * 20; ++i) halves.labels.push_back(i % 24 < 12 ? 1 : 2);
+  for (int i = 0; i < 16 * 14 * 14; ++i) halves.labels.push_back(i % 16 < 8 ? 1 : 2);
   write_label_volume(halves, folder_ / "halves.nrrd");
-  for (const double gap : {0.05, 0.2, 0.4, 0.7}) {
+  for (const double gap : {0.1, 0.26, 0.46, 0.7}) {
     const Answer a = run("prepare " + (folder_ / "halves.nrrd") +
-                         " --material box=" + box("b.stl", {11.5 + gap, 5.5, 5.5}, {17.5, 13.5, 14.5}) +
-                         " --surface-space RAS --target-tets 6000 -o " + (folder_ / "p.vtu") + " --stats " +
+                         " --material box=" + box("b.stl", {7.5 + gap, 4, 4}, {12.5, 9, 10}) +
+                         " --surface-space RAS --target-tets 4000 -o " + (folder_ / "p.vtu") + " --stats " +
                          (folder_ / "s.json"));
     EXPECT_EQ(a.status, 0) << gap << a.err;
     EXPECT_LT(stats().at("result").at("percent_below_threshold"), 1) << gap;
