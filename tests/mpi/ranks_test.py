@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests tetwright-mpi: the same bytes for any number of ranks, errors, and ranks that are killed.
+"""Tests tetwright-mpi: the same bytes for any number of ranks and rounds, errors, and ranks that are killed.
 
 ranks_test.py TETWRIGHT TETWRIGHT_MPI [VOXELS GRAINS]   size of the foam; default: 64 20, in eight bricks
 """
 import glob
 import json
+import math
 import os
 import signal
 import subprocess
@@ -35,8 +36,13 @@ def content(file):
         return f.read()
 
 
-def job(out, *more):
-    return ["prepare", "foam.nrrd", "-o", out, "--target-tets", "2000", "--voxel-size", "1", "--bricks", "32",
+def bricks_of(stats):
+    with open(stats) as f:
+        return json.load(f)["dense"]["bricks"]
+
+
+def job(out, *more, volume="foam.nrrd"):
+    return ["prepare", volume, "-o", out, "--target-tets", "2000", "--voxel-size", "1", "--bricks", "32",
             "--threads", "1", "--quiet", *more]
 
 
@@ -67,16 +73,47 @@ def same_bytes():
         status, _, err = run(ranks, *job(f"{ranks}.vtu", "--stats", "s.json"))
         expect(status == 0, f"{ranks} ranks end with {status}: {err}")
         expect(content(f"{ranks}.vtu") == content("alone.vtu"), f"{ranks} ranks give other bytes")
-        with open("s.json") as f:
-            expect(json.load(f)["dense"]["bricks"]["count"] >= 8, "there are fewer than eight bricks")
+        expect(bricks_of("s.json")["count"] >= 8, "there are fewer than eight bricks")
+        made = bricks_of("s.json")["by_helpers"]
+        expect(len(made) == 1 and (made[0] > 0) == (ranks > 1), f"{ranks} ranks: helpers made {made} bricks")
 
 
 def rounds():
-    subprocess.run([program, *job("rounds.vtu", "--brick-rounds", "2")], check=True)
-    expect(content("rounds.vtu") != content("alone.vtu"), "a second round changes nothing")
-    status, _, err = run(3, *job("3.vtu", "--brick-rounds", "2"))
-    expect(status == 0, f"two rounds end with {status}: {err}")
-    expect(content("3.vtu") == content("rounds.vtu"), "two rounds give other bytes with three ranks")
+    """Helpers have neither the memory nor the scratch folder of rank 0."""
+    for number in ("1", "2", "3"):
+        rounds_of = ["--brick-rounds", number]
+        alone = subprocess.run([program, *job(f"rounds{number}.vtu", *rounds_of, volume="small.nrrd")])
+        expect(alone.returncode == 0, f"{number} rounds end with {alone.returncode}")
+        for ranks, more in ((2, []), (3, ["--scratch", "bricks"])):
+            call = job("r.vtu", *rounds_of, "--stats", "s.json", *more, volume="small.nrrd")
+            status, _, err = run(ranks, *call)
+            expect(status == 0, f"{number} rounds of {ranks} ranks end with {status}: {err}")
+            expect(content("r.vtu") == content(f"rounds{number}.vtu"), f"{number} rounds of {ranks} ranks: other bytes")
+            made = bricks_of("s.json")["by_helpers"]
+            expect(len(made) == int(number) and min(made) > 0, f"{ranks} ranks: helpers made {made} bricks")
+            expect(not os.path.exists("bricks"), "the scratch folder is left")
+    expect(len({content(f"rounds{number}.vtu") for number in ("1", "2", "3")}) == 3, "further rounds change nothing")
+
+
+def repeats():
+    """A gap of a voxel between two bricks, whose boundaries move by more than that."""
+    def label(x, y, z):
+        at = 32 + 3 * math.sin(y / 3.5) * math.cos(z / 3.85)
+        if min(x, y, z) < 3 or max(y, z) > 28 or x > 60:
+            return 0
+        return 1 if x < at - 0.5 else 2 if x > at + 0.5 else 0
+
+    with open("gap.nrrd", "wb") as f:
+        f.write(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 64 32 32\nspacings: 1 1 1\nencoding: raw\n\n")
+        f.write(bytes(label(x, y, z) for z in range(32) for y in range(32) for x in range(64)))
+    call = ["prepare", "gap.nrrd", "--target-tets", "150", "--voxel-size", "1", "--bricks", "32", "--brick-rounds", "2",
+            "--quiet", "--threads", "1"]
+    status = subprocess.run([program, *call, "-o", "gap.vtu"], stderr=subprocess.DEVNULL).returncode
+    expect(status <= 1, f"the gap ends with {status}")
+    with_ranks, _, err = run(3, *call, "-o", "r.vtu", "--stats", "s.json")
+    expect(with_ranks == status, f"the gap ends with {with_ranks}, not {status}: {err}")
+    expect(content("r.vtu") == content("gap.vtu"), "the gap has other bytes with three ranks")
+    expect(bricks_of("s.json")["surfaces_kept"] >= 2, "no brick is made again")
 
 
 def errors():
@@ -94,11 +131,13 @@ def errors():
     expect(status == 0 and out.count("tetwright") == 1, f"--version says {out!r}")
 
 
-def killed_rank(rank):
-    """Kills a rank once there is a finished brick, and lets the same call go on."""
-    process = start(3, *job("killed.vtu", "--scratch", "bricks"))
+def killed_rank(rank, number):
+    """Kills a rank once there is a finished brick of the last round, and lets the same call go on."""
+    more = ["--scratch", "bricks", "--brick-rounds", number]
+    of_round = "bricks/brick-*" if number == "1" else f"bricks/brick-*-round-{number}*"
+    process = start(3, *job("killed.vtu", *more, volume="small.nrrd"))
     end = time.monotonic() + 300
-    while not glob.glob("bricks/brick-*") and process.poll() is None and time.monotonic() < end:
+    while not glob.glob(of_round) and process.poll() is None and time.monotonic() < end:
         time.sleep(0.01)
     ranks = processes(process.pid)
     expect(rank in ranks, f"rank {rank} ended before it could be killed")
@@ -107,12 +146,11 @@ def killed_rank(rank):
     expect(process.returncode != 0, f"status 0 after rank {rank} was killed")
     expect(not os.path.exists("killed.vtu"), f"a mesh is written after rank {rank} was killed")
     finished = len(glob.glob("bricks/brick-*"))
-    expect(finished > 0, f"no finished brick is left after rank {rank} was killed")
-    status, _, err = run(2, *job("killed.vtu", "--scratch", "bricks", "--stats", "s.json"))
+    expect(glob.glob(of_round), f"no finished brick is left after rank {rank} was killed")
+    status, _, err = run(2, *job("killed.vtu", *more, "--stats", "s.json", volume="small.nrrd"))
     expect(status == 0, f"the same call ends with {status}: {err}")
-    expect(content("killed.vtu") == content("alone.vtu"), f"other bytes after rank {rank} was killed")
-    with open("s.json") as f:
-        resumed = json.load(f)["dense"]["bricks"]["resumed"]
+    expect(content("killed.vtu") == content(f"rounds{number}.vtu"), f"other bytes after rank {rank} was killed in round {number}")
+    resumed = bricks_of("s.json")["resumed"]
     expect(resumed == finished, f"{finished} bricks were finished, and {resumed} were used")
     expect(not os.path.exists("bricks"), "the scratch folder is left")
     os.remove("killed.vtu")
@@ -122,9 +160,14 @@ with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     subprocess.run([program, "sample", "foam", "--voxels", voxels, "--grains", grains, "-o", "foam.nrrd", "--quiet"],
                    check=True)
+    subprocess.run([program, "sample", "foam", "--voxels", "48", "--grains", "8", "-o", "small.nrrd", "--quiet"],
+                   check=True)
     same_bytes()
     rounds()
+    repeats()
     errors()
-    killed_rank(0)
-    killed_rank(2)
-print("ranks_test: 1, 2, 3, 4 and 8 ranks give the same bytes; errors and killed ranks end as they should")
+    for last_round in ("1", "2"):
+        killed_rank(0, last_round)
+        killed_rank(2, last_round)
+print("ranks_test: 1, 2, 3, 4 and 8 ranks give the same bytes in one to three rounds; errors and killed ranks end as "
+      "they should")

@@ -24,14 +24,14 @@
 #include "tools/app/interruption.h"
 #include "tools/app/log_file.h"
 #include "tools/app/printed_report.h"
-#include "tools/bricks/brick_team.h"
+#include "tools/bricks/process_team.h"
 
 namespace tetwright {
 
 namespace {
 
 /// Prepares the command for a member of a team. Only the leader writes and prints.
-void join(BrickTeam& team, CommandLine& line) {
+void join(ProcessTeam& team, CommandLine& line) {
   BrickOptions& bricks = line.options.bricks;
   if (line.command != Command::prepare || bricks.use == BrickOptions::Use::never)
     throw UsageError(
@@ -56,7 +56,7 @@ void join(BrickTeam& team, CommandLine& line) {
 
 }  // namespace
 
-int run_program(int argc, char** argv, BrickTeam* team) {
+int run_program(int argc, char** argv, ProcessTeam* team) {
   // A signal that ends a helper ends the leader, too, which tells the user.
   if (!team || team->is_leader()) handle_interruptions();
 #ifdef __GLIBC__

@@ -354,14 +354,16 @@ void add_mesher_json(const MesherReport& m, nlohmann::json& dense) {
 }
 
 nlohmann::json bricks_json(const BrickReport& bricks) {
-  return {{"cells", bricks.cells},
-          {"count", bricks.bricks},
-          {"rounds", bricks.rounds},
-          {"repeated", bricks.repeated},
-          {"surfaces_kept", bricks.surfaces_kept},
-          {"resumed", bricks.resumed},
-          {"coarse_tets", bricks.coarse_tets},
-          {"scratch_bytes", static_cast<std::uint64_t>(bricks.scratch_bytes)}};
+  nlohmann::json json = {{"cells", bricks.cells},
+                         {"count", bricks.bricks},
+                         {"rounds", bricks.rounds},
+                         {"repeated", bricks.repeated},
+                         {"surfaces_kept", bricks.surfaces_kept},
+                         {"resumed", bricks.resumed},
+                         {"coarse_tets", bricks.coarse_tets},
+                         {"scratch_bytes", static_cast<std::uint64_t>(bricks.scratch_bytes)}};
+  if (!bricks.by_helpers.empty()) json["by_helpers"] = bricks.by_helpers;
+  return json;
 }
 
 /// Diagnostics of the report, and the error if there is no result.
