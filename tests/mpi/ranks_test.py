@@ -8,6 +8,8 @@ import glob
 import json
 import math
 import os
+import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -60,6 +62,13 @@ def processes(pid):
         except (OSError, KeyError, StopIteration):
             continue
     return found
+
+
+def wait_for(pattern, process):
+    """Waits for a file, or for the end of the process."""
+    end = time.monotonic() + 300
+    while not glob.glob(pattern) and process.poll() is None and time.monotonic() < end:
+        time.sleep(0.01)
 
 
 def expect(condition, what):
@@ -116,6 +125,37 @@ def repeats():
     expect(bricks_of("s.json")["surfaces_kept"] >= 2, "no brick is made again")
 
 
+def output():
+    """All ranks write pieces. A limit on the size of files lets all but rank 0 fail."""
+    for index, name in enumerate(("p.pvtu", "p.msh")):
+        for ranks, folder in ((1, "one"), (3, "three")):
+            os.makedirs(folder, exist_ok=True)
+            call = job(f"{folder}/{name}", "--parts", "7", "--brick-rounds", "1", volume="small.nrrd")
+            if ranks == 1:
+                subprocess.run([program, *call], check=True)
+                continue
+            status, _, err = run(ranks, *call, "--stats", "s.json")
+            expect(status == 0, f"{name} of {ranks} ranks ends with {status}: {err}")
+            with open("s.json") as f:
+                expect(0 < json.load(f)["parts"]["by_helpers"] < 7, f"{name}: not all ranks write pieces")
+        files = sorted(os.listdir("one"))
+        expect(len(files) == (8, 15)[index] and sorted(os.listdir("three")) == files, f"{name}: other files: {files}")
+        for file in files:
+            expect(content(f"one/{file}") == content(f"three/{file}"), f"{file} has other bytes with three ranks")
+    os.mkdir("limited")
+    process = start(3, *job("limited/p.pvtu", "--parts", "7", "--scratch", "bricks", volume="small.nrrd"))
+    wait_for("bricks/brick-*", process)
+    for rank, pid in processes(process.pid).items():
+        if rank > 0:
+            resource.prlimit(pid, resource.RLIMIT_FSIZE, (1000, 1000))
+    _, err = process.communicate(timeout=600)
+    lines = [line for line in err.splitlines() if line.startswith("tetwright: ")]
+    expect(process.returncode == 5, f"a rank that cannot write ends with {process.returncode}: {err}")
+    expect(len(lines) == 1 and "limited/p_" in lines[0] and "(rank" in lines[0], f"a rank that cannot write: {lines}")
+    expect(not os.listdir("limited"), f"a failed run leaves {os.listdir('limited')}")
+    shutil.rmtree("bricks")
+
+
 def errors():
     for arguments, expected, said in (
             (job("x.vtu")[:1] + ["missing.nrrd"] + job("x.vtu")[2:], 3, "missing.nrrd"),
@@ -136,9 +176,7 @@ def killed_rank(rank, number):
     more = ["--scratch", "bricks", "--brick-rounds", number]
     of_round = "bricks/brick-*" if number == "1" else f"bricks/brick-*-round-{number}*"
     process = start(3, *job("killed.vtu", *more, volume="small.nrrd"))
-    end = time.monotonic() + 300
-    while not glob.glob(of_round) and process.poll() is None and time.monotonic() < end:
-        time.sleep(0.01)
+    wait_for(of_round, process)
     ranks = processes(process.pid)
     expect(rank in ranks, f"rank {rank} ended before it could be killed")
     os.kill(ranks[rank], signal.SIGKILL)
@@ -165,9 +203,10 @@ with tempfile.TemporaryDirectory() as folder:
     same_bytes()
     rounds()
     repeats()
+    output()
     errors()
     for last_round in ("1", "2"):
         killed_rank(0, last_round)
         killed_rank(2, last_round)
-print("ranks_test: 1, 2, 3, 4 and 8 ranks give the same bytes in one to three rounds; errors and killed ranks end as "
-      "they should")
+print("ranks_test: 1, 2, 3, 4 and 8 ranks give the same bytes in one to three rounds, and in pieces of a mesh; "
+      "errors and killed ranks end as they should")

@@ -56,6 +56,11 @@ ReadTetMesh read_tetgen_files(const std::string& path, const ReadTetMeshOptions&
   return read_tetgen({node_bytes, node}, {ele_bytes, ele}, faces, options);
 }
 
+template <bool binary>
+void write_msh_piece(const MeshPiece& piece, const DividedMesh& whole, const ByteSink& sink) {
+  write_msh41_piece(piece, whole, binary, sink);
+}
+
 std::vector<std::string> only_this_file(const std::string& path, PartNumber /*parts*/) { return {path}; }
 
 template <void (*write)(const MeshToWrite&, const ByteSink&)>
@@ -126,7 +131,8 @@ const std::vector<TetFormat>& tet_formats() {
        .name = "pvtu",
        .read_files = read_pvtu_files,
        .part_files = {.names = files_of_pvtu,
-                      .write = write_pvtu,
+                      .write_piece = write_vtu_piece,
+                      .write_index = write_pvtu_index,
                       .own_point_fields = own_vtk_points,
                       .own_cell_fields = own_vtk_cells},
        .parts = vtk_piece_parts,
@@ -154,7 +160,7 @@ const std::vector<TetFormat>& tet_formats() {
        .name = "msh41",
        .read = read_msh,
        .write = {{".msh", write_alone<write_msh41>}},
-       .part_files = {files_of_msh_pieces, write_msh41_pieces},
+       .part_files = {.names = files_of_msh_pieces, .write_piece = write_msh_piece<false>},
        .parts = msh_parts,
        .field_name = msh_name,
        .second_order = true,
@@ -163,7 +169,7 @@ const std::vector<TetFormat>& tet_formats() {
        .name = "msh41-binary",
        .read = read_msh,
        .write = {{".msh", write_alone<write_msh41_binary>}},
-       .part_files = {files_of_msh_pieces, write_msh41_binary_pieces},
+       .part_files = {.names = files_of_msh_pieces, .write_piece = write_msh_piece<true>},
        .parts = msh_parts,
        .field_name = msh_name,
        .second_order = true,

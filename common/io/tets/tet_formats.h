@@ -23,11 +23,16 @@ struct WrittenFile {
 /// How a format holds a mesh in parts, each with the tets of others next to it.
 struct PartFiles {
   std::vector<std::string> (*names)(const std::string& path, PartNumber parts) = nullptr;  ///< of the files
+  /// Writes all files. Null: the first ones are those of the pieces, in ascending order.
   void (*write)(const MeshPieces& pieces, const std::string& path, OutputFiles& files) = nullptr;
+  void (*write_piece)(const MeshPiece& piece, const DividedMesh& whole, const ByteSink& sink) = nullptr;
+  /// Writes the last file. Null: there are only pieces.
+  /// \param stem its name without folders and extension
+  void (*write_index)(const DividedMesh& whole, const std::string& stem, const ByteSink& sink) = nullptr;
   // Fields that the writer adds itself, as TetFormat::own_cell_fields.
   std::vector<std::string> own_point_fields = {}, own_cell_fields = {};
 
-  explicit operator bool() const { return write != nullptr; }
+  explicit operator bool() const { return write || write_piece; }
 };
 
 /// A tet mesh format: its reader, its writer and the contents that it can store.
