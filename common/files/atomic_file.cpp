@@ -156,6 +156,7 @@ class TemporaryFile {
   TemporaryFile& operator=(const TemporaryFile&) = delete;
 
   int file() const { return file_; }
+  const std::string& path() const { return path_; }
   int close() {
     const int result = ::close(file_);
     file_ = -1;
@@ -194,6 +195,26 @@ class TemporaryFile {
 
 /// Bytes written between two checks for cancellation. Some systems reject more than 2 GiB in one call.
 constexpr std::size_t piece_size = std::size_t{1} << 26;
+
+/// Writes the content of an open file, and syncs it to disk.
+/// \param path for messages
+/// \param progress null: it cannot be cancelled
+void write_content(int file, const std::string& path, const Progress* progress,
+                   const std::function<void(const ByteSink&)>& content) {
+  const FileSizeSignalIgnored ignored;
+  content([&](std::string_view bytes) {
+    while (!bytes.empty()) {
+      if (progress) progress->throw_if_stopped();
+      const ssize_t written = ::write(file, bytes.data(), std::min(bytes.size(), piece_size));
+      if (written < 0) {
+        if (errno == EINTR) continue;
+        fail(path, "writing failed", errno);
+      }
+      bytes.remove_prefix(static_cast<std::size_t>(written));
+    }
+  });
+  if (fsync(file) != 0) fail(path, "syncing to the disk failed", errno);
+}
 
 /// Writes to standard output. The reader of a pipe receives the bytes at once, so they cannot be withdrawn.
 void write_to_stdout(std::string_view bytes) {
@@ -287,29 +308,46 @@ void OutputFiles::write(const std::string& path, const std::function<void(const 
     });
     return;
   }
-  check_output_file(path);
-  if (progress_) progress_->throw_if_stopped();
-  const FileSizeSignalIgnored ignored;
-  auto pending = std::make_unique<Pending>(path);
+  auto pending = make_pending(path);
   TemporaryFile& temporary = pending->temporary;
-  if (temporary.file() < 0) fail(path, "cannot create a file in its folder", errno);
-  struct stat status;
-  if (stat(pending->target.c_str(), &status) == 0 && fchmod(temporary.file(), status.st_mode & 07777) != 0)
-    fail(path, "permissions", errno);
-  content([&](std::string_view bytes) {
-    while (!bytes.empty()) {
-      if (progress_) progress_->throw_if_stopped();
-      const ssize_t written = ::write(temporary.file(), bytes.data(), std::min(bytes.size(), piece_size));
-      if (written < 0) {
-        if (errno == EINTR) continue;
-        fail(path, "writing failed", errno);
-      }
-      bytes.remove_prefix(static_cast<std::size_t>(written));
-    }
-  });
-  if (fsync(temporary.file()) != 0) fail(path, "syncing to the disk failed", errno);
+  write_content(temporary.file(), path, progress_, content);
   if (temporary.close() != 0) fail(path, "closing failed", errno);
   pending_.push_back(std::move(pending));
+}
+
+std::string OutputFiles::reserve(const std::string& path) {
+  TETWRIGHT_CHECK(path != standard_stream);
+  auto pending = make_pending(path);
+  if (pending->temporary.close() != 0) fail(path, "closing failed", errno);
+  pending_.push_back(std::move(pending));
+  return fs::absolute(pending_.back()->temporary.path()).string();
+}
+
+std::unique_ptr<OutputFiles::Pending> OutputFiles::make_pending(const std::string& path) const {
+  check_output_file(path);
+  if (progress_) progress_->throw_if_stopped();
+  auto pending = std::make_unique<Pending>(path);
+  const int file = pending->temporary.file();
+  if (file < 0) fail(path, "cannot create a file in its folder", errno);
+  struct stat status;
+  if (stat(pending->target.c_str(), &status) == 0 && fchmod(file, status.st_mode & 07777) != 0)
+    fail(path, "permissions", errno);
+  return pending;
+}
+
+void write_reserved_file(const std::string& temporary, const std::string& path,
+                         const std::function<void(const ByteSink&)>& content, const Progress* progress) {
+  // Not created here: if the folder is another one, nobody would find the file.
+  const int file = open(temporary.c_str(), O_WRONLY | O_TRUNC | O_CLOEXEC);
+  if (file < 0)
+    fail(path, "its temporary file " + temporary + " is not seen; all processes must see the folder", errno);
+  try {
+    write_content(file, path, progress, content);
+  } catch (...) {
+    ::close(file);
+    throw;
+  }
+  if (::close(file) != 0) fail(path, "closing failed", errno);
 }
 
 void OutputFiles::commit() {

@@ -20,6 +20,7 @@
 #include "common/io/surfaces/vtp.h"
 #include "common/io/tets/medit.h"
 #include "common/io/tets/msh.h"
+#include "common/io/tets/piece_files.h"
 #include "common/io/tets/pvtu.h"
 #include "common/io/tets/tet_formats.h"
 #include "common/io/tets/vtk.h"
@@ -447,12 +448,12 @@ void write_tet_mesh(const MeshToWrite& mesh, const std::string& path, OutputFile
 }
 
 void write_tet_mesh(const MeshToWrite& mesh, const TetPartition& partition, const std::string& path,
-                    OutputFiles* files, const std::string& name) {
+                    OutputFiles* files, const std::string& name, const FileSharing* share) {
   const TetFormat& format = need_format_of_parts(path, name);
   const MeshPieces pieces(mesh.mesh, mesh.midside, partition);
   std::optional<OutputFiles> own;  // makes the files appear together
   if (!files) files = &own.emplace();
-  format.part_files.write(pieces, path, *files);
+  write_part_files(format, pieces, path, *files, share);
   if (own) own->commit();
 }
 

@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Tests tetwright-mpi: the same bytes for any number of ranks, errors, and ranks that are killed.
+"""Tests tetwright-mpi: the same bytes for any number of ranks and rounds, errors, and ranks that are killed.
 
 ranks_test.py TETWRIGHT TETWRIGHT_MPI [VOXELS GRAINS]   size of the foam; default: 64 20, in eight bricks
 """
 import glob
 import json
+import math
 import os
+import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -35,8 +38,13 @@ def content(file):
         return f.read()
 
 
-def job(out, *more):
-    return ["prepare", "foam.nrrd", "-o", out, "--target-tets", "2000", "--voxel-size", "1", "--bricks", "32",
+def bricks_of(stats):
+    with open(stats) as f:
+        return json.load(f)["dense"]["bricks"]
+
+
+def job(out, *more, volume="foam.nrrd"):
+    return ["prepare", volume, "-o", out, "--target-tets", "2000", "--voxel-size", "1", "--bricks", "32",
             "--threads", "1", "--quiet", *more]
 
 
@@ -56,6 +64,13 @@ def processes(pid):
     return found
 
 
+def wait_for(pattern, process):
+    """Waits for a file, or for the end of the process."""
+    end = time.monotonic() + 300
+    while not glob.glob(pattern) and process.poll() is None and time.monotonic() < end:
+        time.sleep(0.01)
+
+
 def expect(condition, what):
     if not condition:
         sys.exit(f"ranks_test: {what}")
@@ -67,16 +82,126 @@ def same_bytes():
         status, _, err = run(ranks, *job(f"{ranks}.vtu", "--stats", "s.json"))
         expect(status == 0, f"{ranks} ranks end with {status}: {err}")
         expect(content(f"{ranks}.vtu") == content("alone.vtu"), f"{ranks} ranks give other bytes")
-        with open("s.json") as f:
-            expect(json.load(f)["dense"]["bricks"]["count"] >= 8, "there are fewer than eight bricks")
+        expect(bricks_of("s.json")["count"] >= 8, "there are fewer than eight bricks")
+        made = bricks_of("s.json")["by_helpers"]
+        expect(len(made) == 1 and (made[0] > 0) == (ranks > 1), f"{ranks} ranks: helpers made {made} bricks")
 
 
 def rounds():
-    subprocess.run([program, *job("rounds.vtu", "--brick-rounds", "2")], check=True)
-    expect(content("rounds.vtu") != content("alone.vtu"), "a second round changes nothing")
-    status, _, err = run(3, *job("3.vtu", "--brick-rounds", "2"))
-    expect(status == 0, f"two rounds end with {status}: {err}")
-    expect(content("3.vtu") == content("rounds.vtu"), "two rounds give other bytes with three ranks")
+    """Helpers have neither the memory nor the scratch folder of rank 0."""
+    for number in ("1", "2", "3"):
+        rounds_of = ["--brick-rounds", number]
+        alone = subprocess.run([program, *job(f"rounds{number}.vtu", *rounds_of, volume="small.nrrd")])
+        expect(alone.returncode == 0, f"{number} rounds end with {alone.returncode}")
+        for ranks, more in ((2, []), (3, ["--scratch", "bricks"])):
+            call = job("r.vtu", *rounds_of, "--stats", "s.json", *more, volume="small.nrrd")
+            status, _, err = run(ranks, *call)
+            expect(status == 0, f"{number} rounds of {ranks} ranks end with {status}: {err}")
+            expect(content("r.vtu") == content(f"rounds{number}.vtu"), f"{number} rounds of {ranks} ranks: other bytes")
+            made = bricks_of("s.json")["by_helpers"]
+            expect(len(made) == int(number) and min(made) > 0, f"{ranks} ranks: helpers made {made} bricks")
+            expect(not os.path.exists("bricks"), "the scratch folder is left")
+    expect(len({content(f"rounds{number}.vtu") for number in ("1", "2", "3")}) == 3, "further rounds change nothing")
+
+
+def repeats():
+    """A gap of a voxel between two bricks, whose boundaries move by more than that."""
+    def label(x, y, z):
+        at = 32 + 3 * math.sin(y / 3.5) * math.cos(z / 3.85)
+        if min(x, y, z) < 3 or max(y, z) > 28 or x > 60:
+            return 0
+        return 1 if x < at - 0.5 else 2 if x > at + 0.5 else 0
+
+    with open("gap.nrrd", "wb") as f:
+        f.write(b"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 64 32 32\nspacings: 1 1 1\nencoding: raw\n\n")
+        f.write(bytes(label(x, y, z) for z in range(32) for y in range(32) for x in range(64)))
+    call = ["prepare", "gap.nrrd", "--target-tets", "150", "--voxel-size", "1", "--bricks", "32", "--brick-rounds", "2",
+            "--quiet", "--threads", "1"]
+    status = subprocess.run([program, *call, "-o", "gap.vtu"], stderr=subprocess.DEVNULL).returncode
+    expect(status <= 1, f"the gap ends with {status}")
+    with_ranks, _, err = run(3, *call, "-o", "r.vtu", "--stats", "s.json")
+    expect(with_ranks == status, f"the gap ends with {with_ranks}, not {status}: {err}")
+    expect(content("r.vtu") == content("gap.vtu"), "the gap has other bytes with three ranks")
+    expect(bricks_of("s.json")["surfaces_kept"] >= 2, "no brick is made again")
+
+
+def output():
+    """All ranks write pieces."""
+    for index, name in enumerate(("p.pvtu", "p.msh")):
+        for ranks, folder in ((1, "one"), (3, "three")):
+            os.makedirs(folder, exist_ok=True)
+            call = job(f"{folder}/{name}", "--parts", "7", "--brick-rounds", "1", volume="small.nrrd")
+            if ranks == 1:
+                subprocess.run([program, *call], check=True)
+                continue
+            status, _, err = run(ranks, *call, "--stats", "s.json")
+            expect(status == 0, f"{name} of {ranks} ranks ends with {status}: {err}")
+            with open("s.json") as f:
+                expect(0 < json.load(f)["parts"]["by_helpers"] < 7, f"{name}: not all ranks write pieces")
+        files = sorted(os.listdir("one"))
+        expect(len(files) == (8, 15)[index] and sorted(os.listdir("three")) == files, f"{name}: other files: {files}")
+        for file in files:
+            expect(content(f"one/{file}") == content(f"three/{file}"), f"{file} has other bytes with three ranks")
+    limited_rank("p.pvtu")
+
+
+def limited_rank(name):
+    """Files of other ranks than rank 0 may have 1,000 bytes."""
+    os.mkdir("limited")
+    process = start(3, *job(f"limited/{name}", "--parts", "7", "--scratch", "bricks", volume="small.nrrd"))
+    wait_for("bricks/brick-*", process)
+    for rank, pid in processes(process.pid).items():
+        if rank > 0:
+            resource.prlimit(pid, resource.RLIMIT_FSIZE, (1000, 1000))
+    _, err = process.communicate(timeout=600)
+    # If rank 0 waits within the HDF5 library, it is interrupted.
+    lines = [line for line in err.splitlines() if line.startswith("tetwright: ") and ": interrupted" not in line]
+    expect(process.returncode == 5, f"a rank that cannot write ends with {process.returncode}: {err}")
+    expect(len(lines) == 1 and f"limited/{name[0]}" in lines[0] and "(rank" in lines[0],
+           f"a rank that cannot write: {lines}")
+    os.rmdir("limited")  # it is empty
+    shutil.rmtree("bricks")
+
+
+def hdf5_contents(file):
+    """Everything that h5diff compares."""
+    import h5py
+    found = {}
+
+    def add(name, item):
+        attributes = {key: (value.dtype, value.tolist()) if hasattr(value, "dtype") else value
+                      for key, value in item.attrs.items()}
+        data = (item.dtype, item.shape, item[()].tobytes()) if isinstance(item, h5py.Dataset) else None
+        found[name] = (attributes, data)
+
+    with h5py.File(file, "r") as f:
+        f.visititems(add)
+    return found
+
+
+def hdf5():
+    """All ranks write HDF5 files together, if the build has parallel HDF5: then chunks lie elsewhere."""
+    for name in ("h.vtkhdf", "h.xdmf"):
+        for folder in ("one", "three"):
+            shutil.rmtree(folder, ignore_errors=True)
+            os.mkdir(folder)
+        more = ["--parts", "7", "--order", "2", "--brick-rounds", "1"]
+        subprocess.run([program, *job(f"one/{name}", *more, volume="small.nrrd")], check=True)
+        status, _, err = run(3, *job(f"three/{name}", *more, "--stats", "s.json", volume="small.nrrd"))
+        expect(status == 0, f"{name} of 3 ranks ends with {status}: {err}")
+        with open("s.json") as f:
+            ranks = json.load(f)["parts"].get("hdf5_ranks", 1)
+        files = sorted(os.listdir("one"))
+        expect(sorted(os.listdir("three")) == files, f"{name}: other files: {os.listdir('three')}")
+        for file in files:
+            alone, together = f"one/{file}", f"three/{file}"
+            if ranks == 1 or file.endswith(".xdmf"):
+                expect(content(alone) == content(together), f"{file} has other bytes with three ranks")
+            else:
+                expect(ranks == 3, f"{ranks} ranks write {file}")
+                expect(hdf5_contents(alone) == hdf5_contents(together), f"{file} has other contents with three ranks")
+    if ranks == 3:
+        limited_rank("h.vtkhdf")
 
 
 def errors():
@@ -94,12 +219,12 @@ def errors():
     expect(status == 0 and out.count("tetwright") == 1, f"--version says {out!r}")
 
 
-def killed_rank(rank):
-    """Kills a rank once there is a finished brick, and lets the same call go on."""
-    process = start(3, *job("killed.vtu", "--scratch", "bricks"))
-    end = time.monotonic() + 300
-    while not glob.glob("bricks/brick-*") and process.poll() is None and time.monotonic() < end:
-        time.sleep(0.01)
+def killed_rank(rank, number):
+    """Kills a rank once there is a finished brick of the last round, and lets the same call go on."""
+    more = ["--scratch", "bricks", "--brick-rounds", number]
+    of_round = "bricks/brick-*" if number == "1" else f"bricks/brick-*-round-{number}*"
+    process = start(3, *job("killed.vtu", *more, volume="small.nrrd"))
+    wait_for(of_round, process)
     ranks = processes(process.pid)
     expect(rank in ranks, f"rank {rank} ended before it could be killed")
     os.kill(ranks[rank], signal.SIGKILL)
@@ -107,12 +232,11 @@ def killed_rank(rank):
     expect(process.returncode != 0, f"status 0 after rank {rank} was killed")
     expect(not os.path.exists("killed.vtu"), f"a mesh is written after rank {rank} was killed")
     finished = len(glob.glob("bricks/brick-*"))
-    expect(finished > 0, f"no finished brick is left after rank {rank} was killed")
-    status, _, err = run(2, *job("killed.vtu", "--scratch", "bricks", "--stats", "s.json"))
+    expect(glob.glob(of_round), f"no finished brick is left after rank {rank} was killed")
+    status, _, err = run(2, *job("killed.vtu", *more, "--stats", "s.json", volume="small.nrrd"))
     expect(status == 0, f"the same call ends with {status}: {err}")
-    expect(content("killed.vtu") == content("alone.vtu"), f"other bytes after rank {rank} was killed")
-    with open("s.json") as f:
-        resumed = json.load(f)["dense"]["bricks"]["resumed"]
+    expect(content("killed.vtu") == content(f"rounds{number}.vtu"), f"other bytes after rank {rank} was killed in round {number}")
+    resumed = bricks_of("s.json")["resumed"]
     expect(resumed == finished, f"{finished} bricks were finished, and {resumed} were used")
     expect(not os.path.exists("bricks"), "the scratch folder is left")
     os.remove("killed.vtu")
@@ -122,9 +246,16 @@ with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     subprocess.run([program, "sample", "foam", "--voxels", voxels, "--grains", grains, "-o", "foam.nrrd", "--quiet"],
                    check=True)
+    subprocess.run([program, "sample", "foam", "--voxels", "48", "--grains", "8", "-o", "small.nrrd", "--quiet"],
+                   check=True)
     same_bytes()
     rounds()
+    repeats()
+    output()
+    hdf5()
     errors()
-    killed_rank(0)
-    killed_rank(2)
-print("ranks_test: 1, 2, 3, 4 and 8 ranks give the same bytes; errors and killed ranks end as they should")
+    for last_round in ("1", "2"):
+        killed_rank(0, last_round)
+        killed_rank(2, last_round)
+print("ranks_test: 1, 2, 3, 4 and 8 ranks give the same bytes in one to three rounds, and in pieces of a mesh; "
+      "errors and killed ranks end as they should")

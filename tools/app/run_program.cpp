@@ -16,22 +16,24 @@
 #endif
 
 #include "tetwright/error.h"
+#include "tetwright/file_sharing.h"
 #include "tetwright/files.h"
 #include "tetwright/prepare_steps.h"
+#include "tetwright/resources.h"
 #include "tools/app/command_line.h"
 #include "tools/app/commands/commands.h"
 #include "tools/app/exit_status.h"
 #include "tools/app/interruption.h"
 #include "tools/app/log_file.h"
 #include "tools/app/printed_report.h"
-#include "tools/bricks/brick_team.h"
+#include "tools/bricks/process_team.h"
 
 namespace tetwright {
 
 namespace {
 
 /// Prepares the command for a member of a team. Only the leader writes and prints.
-void join(BrickTeam& team, CommandLine& line) {
+void join(ProcessTeam& team, CommandLine& line) {
   BrickOptions& bricks = line.options.bricks;
   if (line.command != Command::prepare || bricks.use == BrickOptions::Use::never)
     throw UsageError(
@@ -54,9 +56,19 @@ void join(BrickTeam& team, CommandLine& line) {
   line.outputs.stats.clear();
 }
 
+/// Writes pieces of the mesh until the leader has written everything.
+void help_to_write(ProcessTeam& team, const CommandLine& line) {
+  with_threads(line.options.limits.threads, [&] {
+    team.help([](const std::string& order) {
+      write_ordered_piece(order);
+      return std::string();
+    });
+  });
+}
+
 }  // namespace
 
-int run_program(int argc, char** argv, BrickTeam* team) {
+int run_program(int argc, char** argv, ProcessTeam* team) {
   // A signal that ends a helper ends the leader, too, which tells the user.
   if (!team || team->is_leader()) handle_interruptions();
 #ifdef __GLIBC__
@@ -97,7 +109,13 @@ int run_program(int argc, char** argv, BrickTeam* team) {
       say_when_interrupted(
           "tetwright: interrupted; the same call goes on from the bricks that are finished\n");
     };
-    const ExitStatus status = run_command(line);
+    ExitStatus status = ExitStatus::done;
+    try {
+      status = run_command(line);
+    } catch (const HelperFinished&) {
+      help_to_write(*team, line);
+      return 0;
+    }
     if (std::fflush(stdout) != 0 || std::ferror(stdout))
       return fail(ExitStatus::output_failed,
                   "cannot write to standard output" + (line.outputs.mesh.empty() || line.outputs.mesh == "-"
@@ -105,8 +123,6 @@ int run_program(int argc, char** argv, BrickTeam* team) {
                                                            : "; " + line.outputs.mesh + " is written"));
     log_line("exit status " + std::to_string(static_cast<int>(status)));
     return static_cast<int>(status);
-  } catch (const HelperFinished&) {
-    return 0;
   } catch (const std::exception& e) {
     if (team && !team->is_leader()) {
       team->report(static_cast<int>(exit_status(e)), failure_message(e));

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "tools/bricks/brick_part.h"
+#include "tools/bricks/regrouped_bricks.h"
 
 namespace tetwright {
 
@@ -20,5 +21,15 @@ std::string to_bytes(const BrickPart& part);
 /// \param name where the bytes come from, for messages
 /// \throws InputError if they are damaged or incomplete
 BrickPart brick_part(std::string_view bytes, const std::string& name);
+
+/// Everything that another process with the same input and options needs to make a brick.
+struct BrickRequest {
+  BrickTask task;
+  BrickPieces pieces;  ///< none in the first round
+};
+
+/// Likewise, for messages alone.
+std::string to_bytes(const BrickRequest& request);
+BrickRequest brick_request(std::string_view bytes, const std::string& name);
 
 }  // namespace tetwright

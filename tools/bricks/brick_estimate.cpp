@@ -61,12 +61,13 @@ std::array<double, 3> voxels_of_bricks(const LabelInput& labels, double cell, in
 }
 
 BrickEstimator::BrickEstimator(const LabelInput& labels, const MesherOptions& options, double dense,
-                               std::size_t target, bool scratch)
+                               std::size_t target, bool scratch, bool team)
     : labels_(labels),
       cell_(cell_size(labels, options)),
       dense_(dense),
       target_(static_cast<double>(target)),
-      scratch_(scratch) {
+      scratch_(scratch),
+      team_(team) {
   const MemoryModel memory = label_memory(labels, cell_);
   field_ = PerItem::program + memory.beside;
   before_ = PerItem::program + memory.before;
@@ -112,9 +113,12 @@ BrickEstimator::Needs BrickEstimator::needs(int side, int rounds) const {
   for (int round = 2; round <= rounds; ++round) {
     // A brick's piece of a part and the part itself are there together, from a file also its bytes.
     const double share = largest_share(side, Rounds::offset[static_cast<std::size_t>(round - 1)]);
+    const double part_of_file = scratch_ ? 2 * PerItem::kept_face * faces : 0;
     largest_later = std::max(largest_later, share * coarse);
-    needs.later_each = std::max(needs.later_each, share * ((PerItem::tet + 2 * PerItem::kept_tet) * coarse +
-                                                           (scratch_ ? 2 * PerItem::kept_face * faces : 0)));
+    needs.later_each =
+        std::max(needs.later_each, share * ((PerItem::tet + 2 * PerItem::kept_tet) * coarse + part_of_file));
+    // The pieces of a brick for another member, beside their bytes before and after compression.
+    const double message = team_ ? share * (3 * PerItem::kept_tet * coarse + part_of_file) : 0;
     const double area = cuts(Rounds::offset[static_cast<std::size_t>(round - 1)]);
     const double next_faces = faces_of_cuts(area, coarse);
     const double next = std::min(
@@ -123,7 +127,7 @@ BrickEstimator::Needs BrickEstimator::needs(int side, int rounds) const {
     needs.later_base =
         std::max(needs.later_base, field_ + border_bytes_per_area * first_cuts +
                                        PerItem::cut_point * cut_points + PerItem::boundary_face * next_faces +
-                                       (scratch_ ? 0 : kept + PerItem::kept_tet * next));
+                                       message + (scratch_ ? 0 : kept + PerItem::kept_tet * next));
     needs.scratch += PerItem::filed_tet * next;
     // The meshes of the round before are dropped.
     kept += PerItem::kept_tet * (next - coarse);

@@ -38,8 +38,9 @@ class BrickEstimator {
   /// \param dense tets of the dense mesh
   /// \param target final tets
   /// \param scratch whether finished bricks are in files
+  /// \param team whether this process has other members of a team make bricks, too
   BrickEstimator(const LabelInput& labels, const MesherOptions& options, double dense, std::size_t target,
-                 bool scratch);
+                 bool scratch, bool team);
   /// Passes over all voxels. Parallel.
   BrickEstimate operator()(const BrickPlan& plan) const;
   /// The largest bricks, and the most workers, for which the memory suffices with as few rounds as possible;
@@ -67,7 +68,7 @@ class BrickEstimator {
 
   const LabelInput& labels_;
   double cell_, dense_, target_, field_, before_;
-  bool scratch_;
+  bool scratch_, team_;
   mutable std::map<std::pair<int, double>, double> shares_;  ///< largest_share(), a pass over all voxels
 };
 

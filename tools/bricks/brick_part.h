@@ -45,6 +45,7 @@ struct BrickTask {
   bool keep_surface = false;
   /// Thin the dense surface (BrickRoundsTuning::Surface), since the brick will be coarsened again.
   bool thin = false;
+  int round = 1;  ///< from 1
 };
 
 /// Meshes and coarsens a brick.

@@ -23,6 +23,7 @@ class BrickStore {
   BrickStore(std::vector<CellBox> boxes, const BrickScratch* scratch, int round, BrickReport& report);
 
   std::size_t count() const { return boxes_.size(); }
+  int round() const { return round_; }
   /// The border of a brick if a file has what the task asks for.
   std::optional<BrickBorder> finished(const BrickTask& task);
   /// Keeps a brick and returns its border.

@@ -149,32 +149,34 @@ BrickPart RegroupedBricks::piece(std::size_t p, Brick brick, std::vector<Vec3>& 
   return piece;
 }
 
-BrickPart RegroupedBricks::make(const BrickTask& task, double density,
-                                const std::shared_ptr<const MaterialField>& field, CoarsenOptions options,
-                                Progress* progress) const {
-  const Brick brick = static_cast<Brick>(task.brick);
+BrickPieces RegroupedBricks::pieces(std::size_t brick, const Progress* progress) const {
+  const Brick number = static_cast<Brick>(brick);
+  BrickPieces pieces;
+  pieces.brick = bricks_.boxes()[brick];
+  for (std::size_t p = 0; p < bricks_of_part_.size(); ++p)
+    if (std::binary_search(bricks_of_part_[p].begin(), bricks_of_part_[p].end(), number)) {
+      if (progress) progress->throw_if_stopped();
+      pieces.parts.push_back(piece(p, number, pieces.shared));
+    }
+  return pieces;
+}
+
+BrickPart coarsen_pieces(BrickPieces pieces, const BrickTask& task, double density,
+                         const std::shared_ptr<const MaterialField>& field, CoarsenOptions options,
+                         Progress* progress) {
   BrickPart made;
-  made.border.brick = bricks_.boxes()[task.brick];
+  made.border.brick = pieces.brick;
   made.kept_surface = task.keep_surface;
-  if (tets_[task.brick] == 0) return made;
-  std::vector<Vec3> shared;
-  TetMesh mesh;
-  {
-    std::vector<BrickPart> pieces;
-    for (std::size_t p = 0; p < bricks_of_part_.size(); ++p)
-      if (std::binary_search(bricks_of_part_[p].begin(), bricks_of_part_[p].end(), brick)) {
-        pieces.push_back(piece(p, brick, shared));
-        if (progress) progress->throw_if_stopped();
-      }
-    mesh = join_parts(pieces).mesh;
-  }
+  if (pieces.parts.empty()) return made;
+  TetMesh mesh = join_parts(pieces.parts).mesh;
+  std::vector<BrickPart>().swap(pieces.parts);
   double volume = 0;
   for (const Tet& t : mesh.tets) {
     const Vec3& a = mesh.points[t[0]];
     volume += (mesh.points[t[1]] - a).cross(mesh.points[t[2]] - a).dot(mesh.points[t[3]] - a) / 6;
   }
   options.target_tets = density * volume;
-  options.frozen = flags_of(mesh, shared);
+  options.frozen = flags_of(mesh, pieces.shared);
   for (std::uint8_t& flag : options.frozen) flag &= BrickPart::shared;
   if (task.keep_surface)
     for (const InterfaceTriangle& t : mesh.interfaces)
@@ -183,7 +185,7 @@ BrickPart RegroupedBricks::make(const BrickTask& task, double density,
   const auto reference = field ? reference_of(mesh, field) : nullptr;
   options.reference = reference.get();
   made.mesh = coarsen(std::move(mesh), options, nullptr, progress);
-  made.flags = flags_of(made.mesh, shared);
+  made.flags = flags_of(made.mesh, pieces.shared);
   std::erase_if(made.mesh.interfaces, [](const InterfaceTriangle& t) { return t.patch == 0; });
   return made;
 }

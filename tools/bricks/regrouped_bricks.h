@@ -34,9 +34,26 @@ class ShiftedBricks {
   std::array<std::size_t, 3> counts_;
 };
 
+/// Everything that a brick is regrouped from, copied out of the parts of the round before.
+struct BrickPieces {
+  CellBox brick;  ///< BrickBorder::brick
+  /// The tets of each part that has any in this brick, with the flags of the round before; nothing else.
+  std::vector<BrickPart> parts;
+  std::vector<Vec3> shared;  ///< points that other bricks have, too
+};
+
+/// Joins the pieces of a brick, and coarsens them again.
+/// \param density final tets per volume, input units
+/// \param field for the reference surface; null: none
+/// \param options its target, reference and frozen points are not used
+/// \throws Interrupted, OutOfTime
+BrickPart coarsen_pieces(BrickPieces pieces, const BrickTask& task, double density,
+                         const std::shared_ptr<const MaterialField>& field, CoarsenOptions options,
+                         Progress* progress);
+
 /// The parts of a round, regrouped into the bricks of the next one. They need not be in memory together.
 ///
-/// Immutable after construction; bricks may be made concurrently.
+/// Immutable after construction; pieces may be copied concurrently.
 class RegroupedBricks {
  public:
   /// Reads a part of the round before; called concurrently.
@@ -53,13 +70,8 @@ class RegroupedBricks {
   /// Number of points at which the parts were cut off.
   std::size_t shared_points() const { return brick_of_shared_.size(); }
 
-  /// Coarsens a brick again.
-  /// \param density final tets per volume, input units
-  /// \param field for the reference surface; null: none
-  /// \param options its target, reference and frozen points are not used
-  /// \throws Interrupted, OutOfTime
-  BrickPart make(const BrickTask& task, double density, const std::shared_ptr<const MaterialField>& field,
-                 CoarsenOptions options, Progress* progress) const;
+  /// \throws Interrupted, OutOfTime; as Read
+  BrickPieces pieces(std::size_t brick, const Progress* progress) const;
 
  private:
   using Brick = std::uint32_t;

@@ -10,32 +10,35 @@
 #include <cstdint>
 #include <exception>
 #include <mutex>
+#include <set>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "tetwright/error.h"
 #include "tools/app/exit_status.h"
-#include "tools/bricks/brick_bytes.h"
+#ifdef TETWRIGHT_PARALLEL_HDF5
+#include "common/files/byte_archive.h"
+#include "tools/mpi/parallel_hdf5.h"
+#endif
 
 namespace tetwright {
 
 namespace {
 
-/// Kinds of messages.
+/// Kinds of messages. Numbers are followed by as many bytes as they say, in messages of the same kind.
 enum Tag : int {
-  ask,      ///< helper to leader: the hash of its job; which brick next?
-  answer,   ///< leader to helper: an Answer
-  size,     ///< helper to leader: a Size, followed by the brick's bytes
-  bytes,    ///< helper to leader: at most max_message of them
-  failure,  ///< helper to leader: exit status, followed by a text
-  text,     ///< helper to leader
+  ask,      ///< helper to leader: the hash of its job; which task next?
+  order,    ///< leader to helper: an Item
+  result,   ///< helper to leader: an Item
+  failure,  ///< helper to leader: an Item, exit status and a text
   leave     ///< leader to helper: the program ends
 };
 
-using Job = std::array<std::int64_t, 1>;     ///< hash
-using Answer = std::array<std::int64_t, 4>;  ///< the members of a BrickTask
-using Size = std::array<std::int64_t, 2>;    ///< brick and number of bytes
-constexpr std::int64_t no_brick = -1;
+using Job = std::array<std::int64_t, 1>;   ///< hash
+using Item = std::array<std::int64_t, 2>;  ///< task and number of bytes
+/// No task; a file for all to write: its names, then one content after the other.
+constexpr std::int64_t no_task = -1, hdf5_file = -2;
 
 /// Bytes: MPI counts them by an int.
 constexpr std::size_t max_message = std::size_t{1} << 30;
@@ -56,18 +59,22 @@ Numbers receive_numbers(int from, Tag tag) {
   return numbers;
 }
 
-void send_bytes(const std::string& all, int to, Tag tag) {
+/// Sends an Item with its bytes.
+void send_item(std::int64_t number, const std::string& all, int to, Tag tag) {
+  send(Item{number, static_cast<std::int64_t>(all.size())}, to, tag);
   for (std::size_t at = 0; at < all.size(); at += max_message)
     MPI_Send(all.data() + at, static_cast<int>(std::min(max_message, all.size() - at)), MPI_BYTE, to, tag,
              MPI_COMM_WORLD);
 }
 
-std::string receive_bytes(std::size_t size, int from, Tag tag) {
-  std::string all(size, '\0');
-  for (std::size_t at = 0; at < size; at += max_message)
-    MPI_Recv(all.data() + at, static_cast<int>(std::min(max_message, size - at)), MPI_BYTE, from, tag,
+/// \return the Item's number, and its bytes
+std::pair<std::int64_t, std::string> receive_item(int from, Tag tag) {
+  const auto [number, count] = receive_numbers<Item>(from, tag);
+  std::string all(static_cast<std::size_t>(count), '\0');
+  for (std::size_t at = 0; at < all.size(); at += max_message)
+    MPI_Recv(all.data() + at, static_cast<int>(std::min(max_message, all.size() - at)), MPI_BYTE, from, tag,
              MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-  return all;
+  return {number, std::move(all)};
 }
 
 /// Whether a message has arrived that begins an exchange.
@@ -104,39 +111,33 @@ void wait_for(int from, int tag) {
 
 }  // namespace
 
-/// Answers helpers while bricks are made.
+/// Answers helpers while tasks are done.
 class MpiTeam::Service {
  public:
-  Service(MpiTeam& team, std::deque<BrickTask> tasks, const Receive& receive)
-      : team_(team), tasks_(std::move(tasks)), left_(tasks_.size()), receive_(receive) {}
+  Service(MpiTeam& team, const Tasks& tasks) : team_(team), tasks_(tasks), left_(tasks.count) {}
 
-  /// The next brick for the leader, if there is one.
-  bool next(BrickTask& task) {
+  /// The next task for the leader, if there is one.
+  bool next(std::size_t& task) {
     const std::lock_guard guard(mutex_);
-    if (tasks_.empty() || failed_) return false;
-    task = tasks_.front();
-    tasks_.pop_front();
+    if (next_ == tasks_.count || failed_) return false;
+    task = next_++;
     return true;
   }
-  /// Passes on a brick that has been made.
-  void deliver(std::size_t brick, const std::string& data) {
-    const std::lock_guard guard(mutex_);
-    receive_(brick, data);
-    --left_;
-  }
+  void done() { --left_; }
   void stop() { failed_ = true; }
 
-  /// Answers helpers until all bricks have been delivered.
+  /// Answers helpers until all tasks are done.
   void run() {
     try {
       while (left_ > 0 && !failed_) {
         answer_waiting();
-        MPI_Status status;
         if (team_.helper_asked()) continue;
-        if (arrived(MPI_ANY_SOURCE, size, status)) {
-          const auto [brick, count] = receive_numbers<Size>(status.MPI_SOURCE, size);
-          deliver(static_cast<std::size_t>(brick),
-                  receive_bytes(static_cast<std::size_t>(count), status.MPI_SOURCE, bytes));
+        MPI_Status status;
+        if (arrived(MPI_ANY_SOURCE, result, status)) {
+          const auto [task, bytes] = receive_item(status.MPI_SOURCE, result);
+          tasks_.receive(static_cast<std::size_t>(task), bytes);
+          ++by_helpers_;
+          done();
         } else {
           team_.progress_->throw_if_stopped();
           std::this_thread::sleep_for(between_looks);
@@ -147,26 +148,30 @@ class MpiTeam::Service {
       failed_ = true;
     }
   }
-  void rethrow() const {
+  /// Throws the error of run(), if there was one.
+  /// \return number of tasks that helpers did
+  std::size_t by_helpers() const {
     if (error_) std::rethrow_exception(error_);
+    return by_helpers_;
   }
 
  private:
   void answer_waiting() {
-    BrickTask task{};
+    std::size_t task = 0;
     while (!team_.waiting_.empty() && next(task)) {
-      team_.give(team_.waiting_.front(), task);
+      send_item(static_cast<std::int64_t>(task), tasks_.order(task), team_.waiting_.front(), order);
       team_.waiting_.pop_front();
     }
   }
 
   MpiTeam& team_;
-  std::mutex mutex_;  ///< of tasks_ and receive_
-  std::deque<BrickTask> tasks_;
+  const Tasks& tasks_;
+  std::mutex mutex_;  ///< of next_
+  std::size_t next_ = 0;
   std::atomic<std::size_t> left_;
   std::atomic<bool> failed_ = false;
   std::exception_ptr error_;
-  const Receive& receive_;
+  std::size_t by_helpers_ = 0;
 };
 
 MpiTeam::MpiTeam() {
@@ -174,24 +179,19 @@ MpiTeam::MpiTeam() {
   MPI_Comm_size(MPI_COMM_WORLD, &size_);
 }
 
-void MpiTeam::give(int helper, const BrickTask& task) const {
-  send(Answer{static_cast<std::int64_t>(task.brick), task.halo, task.keep_surface, task.thin}, helper,
-       answer);
-}
-
-void MpiTeam::lead(const std::vector<BrickTask>& tasks, const Make& make, const Receive& receive) {
-  Service service(*this, {tasks.begin(), tasks.end()}, receive);
+std::size_t MpiTeam::lead(const Tasks& tasks) {
+  Service service(*this, tasks);
   std::thread thread([&] { service.run(); });
   std::exception_ptr error;
   try {
-    for (BrickTask task{}; service.next(task);) service.deliver(task.brick, to_bytes(make(task)));
+    for (std::size_t task = 0; service.next(task); service.done()) tasks.here(task);
   } catch (...) {
     error = std::current_exception();
     service.stop();
   }
   thread.join();
   if (error) std::rethrow_exception(error);
-  service.rethrow();
+  return service.by_helpers();
 }
 
 void MpiTeam::begin(const std::string& job, const Progress& progress) {
@@ -203,9 +203,8 @@ void MpiTeam::begin(const std::string& job, const Progress& progress) {
 bool MpiTeam::helper_asked() {
   MPI_Status status;
   if (arrived(MPI_ANY_SOURCE, failure, status)) {
-    const auto [code, count] = receive_numbers<Size>(status.MPI_SOURCE, failure);
-    fail_as(status.MPI_SOURCE, static_cast<int>(code),
-            receive_bytes(static_cast<std::size_t>(count), status.MPI_SOURCE, text));
+    const auto [code, text] = receive_item(status.MPI_SOURCE, failure);
+    fail_as(status.MPI_SOURCE, static_cast<int>(code), text);
   }
   if (!arrived(MPI_ANY_SOURCE, ask, status)) return false;
   const auto [job] = receive_numbers<Job>(status.MPI_SOURCE, ask);
@@ -218,35 +217,97 @@ bool MpiTeam::helper_asked() {
   return true;
 }
 
-void MpiTeam::end() {
-  for (int left = size_ - 1; left > 0; --left) {
-    while (waiting_.empty() && !helper_asked()) {
-      progress_->throw_if_stopped();
-      std::this_thread::sleep_for(between_looks);
-    }
-    send(Answer{no_brick, 0, 0, 0}, waiting_.front(), answer);
-    waiting_.pop_front();
+void MpiTeam::wait_for_helper() {
+  while (!helper_asked()) {
+    progress_->throw_if_stopped();
+    std::this_thread::sleep_for(between_looks);
   }
 }
 
-void MpiTeam::help(const Make& make) {
+#ifdef TETWRIGHT_PARALLEL_HDF5
+
+bool MpiTeam::writes_hdf5() const { return true; }
+
+std::size_t MpiTeam::write_hdf5(const std::string& temporary, const std::string& path,
+                                const std::function<void(Hdf5Writer&)>& content) {
+  while (waiting_.size() + 1 < static_cast<std::size_t>(size_)) wait_for_helper();
+  ByteWriter names;
+  names(temporary, path);
+  for (const int helper : waiting_) send_item(hdf5_file, names.bytes, helper, order);
+  waiting_.clear();
+  ParallelHdf5 file(temporary, path,
+                    {[&](const std::string& bytes, int helper) {
+                       progress_->throw_if_stopped();
+                       send_item(hdf5_file, bytes, helper, order);
+                     },
+                     {}});
+  content(file);
+  file.close();
+  return static_cast<std::size_t>(size_);
+}
+
+namespace {
+
+/// A helper's part of write_hdf5().
+void help_with_hdf5(const std::string& order_of_file) {
+  std::string temporary, path;
+  ByteReader(order_of_file, "a file", "the message with its name is incomplete")(temporary, path);
+  ParallelHdf5(temporary, path,
+               {{},
+                [] {
+                  wait_for(0, order);
+                  return receive_item(0, order).second;
+                }})
+      .follow();
+}
+
+}  // namespace
+
+#else
+
+bool MpiTeam::writes_hdf5() const { return false; }
+std::size_t MpiTeam::write_hdf5(const std::string&, const std::string&,
+                                const std::function<void(Hdf5Writer&)>&) {
+  throw InternalError("this build has no parallel HDF5");
+}
+namespace {
+void help_with_hdf5(const std::string&) { throw InternalError("this build has no parallel HDF5"); }
+}  // namespace
+
+#endif
+
+void MpiTeam::end() {
+  std::set<int> ended;
+  std::deque<int> for_next_kind;
+  while (ended.size() + 1 < static_cast<std::size_t>(size_)) {
+    if (waiting_.empty()) wait_for_helper();
+    const int helper = waiting_.front();
+    waiting_.pop_front();
+    if (ended.insert(helper).second)
+      send_item(no_task, {}, helper, order);
+    else
+      for_next_kind.push_back(helper);
+  }
+  waiting_ = std::move(for_next_kind);
+}
+
+void MpiTeam::help(const Work& work) {
   has_news_ = false;
   for (;;) {
     send(Job{static_cast<std::int64_t>(job_)}, 0, ask);
-    wait_for(0, answer);
-    const auto [brick, halo, keep_surface, thin] = receive_numbers<Answer>(0, answer);
-    if (brick == no_brick) return;
-    const std::string data = to_bytes(
-        make({static_cast<std::size_t>(brick), static_cast<int>(halo), keep_surface != 0, thin != 0}));
-    send(Size{brick, static_cast<std::int64_t>(data.size())}, 0, size);
-    send_bytes(data, 0, bytes);
+    wait_for(0, order);
+    const auto [task, bytes] = receive_item(0, order);
+    if (task == no_task) return;
+    if (task == hdf5_file)
+      help_with_hdf5(bytes);
+    else
+      send_item(task, work(bytes), 0, result);
   }
 }
 
 void MpiTeam::report(int status, const std::string& message) {
   has_news_ = false;
-  send(Size{status, static_cast<std::int64_t>(message.size())}, 0, failure);
-  send_bytes(message, 0, text);
+  send_item(status, message, 0, failure);
 }
 
 void MpiTeam::part() {

@@ -9,6 +9,7 @@
 
 #include "tetwright/error.h"
 #include "tetwright/resources.h"
+#include "tools/bricks/brick_bytes.h"
 
 namespace tetwright {
 
@@ -34,24 +35,28 @@ void make_alone(const std::vector<BrickTask>& tasks, unsigned workers, const Mak
 
 }  // namespace
 
-BrickRound::BrickRound(BrickStore& store, std::vector<std::size_t> work, unsigned workers, BrickTeam* team,
-                       BrickTeam::Make make, Progress& progress)
+BrickRound::BrickRound(BrickStore& store, std::vector<std::size_t> work, BrickMaking making,
+                       BrickReport& report, Progress& progress)
     : store_(store),
       work_(std::move(work)),
-      workers_(workers),
-      team_(team),
-      make_(std::move(make)),
+      making_(std::move(making)),
+      report_(report),
       progress_(progress),
       borders_(store.count()),
-      kept_(store.count(), 0) {}
+      kept_(store.count(), 0) {
+  if (making_.team) report_.by_helpers.resize(static_cast<std::size_t>(store.round()), 0);
+}
 
 void BrickRound::make(const std::vector<BrickTask>& tasks) {
   std::vector<BrickTask> left;
-  for (const BrickTask& task : tasks)
+  for (BrickTask task : tasks) {
+    task.round = store_.round();
+    task.thin = thin_;
     if (std::optional<BrickBorder> border = store_.finished(task))
       borders_[task.brick] = std::move(*border);
     else
-      left.emplace_back(task).thin = thin_;
+      left.push_back(task);
+  }
   // Largest first: nobody waits long for the last one.
   std::stable_sort(left.begin(), left.end(),
                    [&](const BrickTask& a, const BrickTask& b) { return work_[a.brick] > work_[b.brick]; });
@@ -61,15 +66,26 @@ void BrickRound::make(const std::vector<BrickTask>& tasks) {
       progress_.update(static_cast<double>(done) / static_cast<double>(tasks.size()));
   };
   show();
-  const auto keep = [&](std::size_t brick, auto part) {
-    borders_[brick] = store_.keep(brick, std::move(part));
+  const auto keep = [&]<class Part>(std::size_t brick, Part&& part) {
+    borders_[brick] = store_.keep(brick, std::forward<Part>(part));
     ++done;
     show();
   };
-  if (team_)
-    team_->lead(left, make_, keep);
-  else
-    make_alone(left, workers_, make_, keep);
+  if (!making_.team) {
+    make_alone(left, making_.workers, making_.make, keep);
+    return;
+  }
+  std::mutex mutex;
+  const auto keep_one = [&]<class Part>(std::size_t task, Part&& part) {
+    const std::lock_guard guard(mutex);
+    keep(left[task].brick, std::forward<Part>(part));
+  };
+  report_.by_helpers.back() +=
+      making_.team->lead({left.size(), [&](std::size_t task) { keep_one(task, making_.make(left[task])); },
+                          [&](std::size_t task) {
+                            return to_bytes(BrickRequest{left[task], making_.pieces(left[task])});
+                          },
+                          [&](std::size_t task, const std::string& bytes) { keep_one(task, bytes); }});
 }
 
 void BrickRound::make_all() {

@@ -7,19 +7,28 @@
 
 #include "tetwright/progress.h"
 #include "tools/bricks/brick_store.h"
-#include "tools/bricks/brick_team.h"
+#include "tools/bricks/process_team.h"
+#include "tools/bricks/regrouped_bricks.h"
 
 namespace tetwright {
+
+/// How the bricks of a round are made.
+struct BrickMaking {
+  unsigned workers;   ///< bricks made at the same time, each by one thread; 1: one by all threads
+  ProcessTeam* team;  ///< null: this process alone
+  std::function<BrickPart(const BrickTask&)> make;
+  /// Pieces of a brick for another member of the team, as BrickRequest::pieces.
+  std::function<BrickPieces(const BrickTask&)> pieces;
+};
 
 /// Has the bricks of a round made, and keeps them.
 class BrickRound {
  public:
   /// \param store all arguments must outlive this object
   /// \param work of each brick, in any unit: those with most of it are made first
-  /// \param workers bricks made at the same time, each by one thread; 1: one by all threads
-  /// \param team null: this process alone
-  BrickRound(BrickStore& store, std::vector<std::size_t> work, unsigned workers, BrickTeam* team,
-             BrickTeam::Make make, Progress& progress);
+  /// \param report counts the bricks of other members
+  BrickRound(BrickStore& store, std::vector<std::size_t> work, BrickMaking making, BrickReport& report,
+             Progress& progress);
   /// Has all bricks made with BrickTask::thin.
   void thin_surfaces() { thin_ = true; }
 
@@ -37,9 +46,8 @@ class BrickRound {
  private:
   BrickStore& store_;
   std::vector<std::size_t> work_;
-  unsigned workers_;
-  BrickTeam* team_;
-  BrickTeam::Make make_;
+  BrickMaking making_;
+  BrickReport& report_;
   Progress& progress_;
   std::vector<BrickBorder> borders_;
   bool thin_ = false;

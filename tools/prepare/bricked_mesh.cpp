@@ -25,8 +25,8 @@
 #include "tools/bricks/brick_part.h"
 #include "tools/bricks/brick_scratch.h"
 #include "tools/bricks/brick_store.h"
-#include "tools/bricks/brick_team.h"
 #include "tools/bricks/gathered_mesh.h"
+#include "tools/bricks/process_team.h"
 #include "tools/prepare/brick_round.h"
 #include "tools/prepare/later_rounds.h"
 
@@ -192,14 +192,15 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double de
   BrickReport& bricks = run.report.bricks.emplace();
   bricks.cells = plan.cells;
   bricks.rounds = plan.rounds;
-  BrickTeam* const team = run.options.bricks.team;
+  ProcessTeam* const team = run.options.bricks.team;
   const bool leads = !team || team->is_leader();
   const BrickJob job = describe(labels, options, plan, run);
   if (!run.options.bricks.scratch.empty() && leads)
     run.scratch = std::make_shared<BrickScratch>(run.options.bricks.scratch, job);
   if (run.scratch && run.options.bricks.when_kept) run.options.bricks.when_kept();
   if (leads)
-    check_space(BrickEstimator(labels, options, dense_tets, *run.options.target.tets, run.scratch != nullptr),
+    check_space(BrickEstimator(labels, options, dense_tets, *run.options.target.tets, run.scratch != nullptr,
+                               team != nullptr),
                 plan, run.scratch.get(), run);
   if (team) {
     std::string text;
@@ -229,13 +230,21 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double de
     return make_brick_part(mesher, boxes[task.brick], task, density, coarsening, run.options.shapes.bound(),
                            &run.progress);
   };
+  const RoundsJob rounds{labels, cell_size(labels, options), plan, density, coarsening, made.field};
   if (!leads) {
-    team->help(make);
+    team->help([&](const std::string& order) {
+      BrickRequest asked = brick_request(order, "message of rank 0");
+      return to_bytes(asked.task.round == 1
+                          ? make(asked.task)
+                          : make_again(std::move(asked.pieces), asked.task, rounds, run.progress));
+    });
     throw HelperFinished();
   }
   bricks.bricks = boxes.size();
   BrickStore store(boxes, run.scratch.get(), 1, bricks);
-  BrickRound round(store, work_in(boxes, faces), plan.workers, team, make, run.progress);
+  BrickRound round(store, work_in(boxes, faces),
+                   {plan.workers, team, make, [](const BrickTask&) { return BrickPieces(); }}, bricks,
+                   run.progress);
   if (again) round.thin_surfaces();
   bricks.repeated = make_bricks(mesher, boxes, round.borders(), [&](const std::vector<BrickOrder>& orders) {
     std::vector<BrickTask> tasks;
@@ -255,15 +264,12 @@ DenseMesh mesh_bricks(LabelInput labels, const MesherOptions& options, double de
       }
       return meeting;
     });
-    if (team) team->end();
   } else {
     bricks.surfaces_kept = round.separate([&] { return meeting_in(store, run.progress); });
-    if (team) team->end();
     stages.begin("coarsen again");
-    gathered =
-        coarsen_again(store, {labels, cell_size(labels, options), plan, density, coarsening, made.field},
-                      names_of(*made.field), run);
+    gathered = coarsen_again(store, rounds, names_of(*made.field), run);
   }
+  if (team) team->end();
   report.cells = gathered.leaves;
   report.lattice_tets = gathered.lattice_tets;
   report.isolated_vertices = gathered.isolated_vertices;

@@ -135,7 +135,7 @@ Need need_of(const LabelInput& labels, const MesherOptions& options, const Prepa
                      conflict_with_bricks(run.options) || fits))
     return need;
   const BrickEstimator estimate(labels, options, static_cast<double>(need.whole.tets),
-                                *run.options.target.tets, !asked.scratch.empty());
+                                *run.options.target.tets, !asked.scratch.empty(), asked.team != nullptr);
   const int rounds = asked.rounds > 0 ? asked.rounds : before.cells == cells ? before.rounds : 0;
   const BrickPlan plan = estimate.choose({cells, rounds}, available);
   const double bytes = estimate(plan).memory;

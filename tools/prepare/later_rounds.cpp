@@ -5,7 +5,6 @@
 
 #include "tetwright/error.h"
 #include "tools/bricks/joined_parts.h"
-#include "tools/bricks/regrouped_bricks.h"
 #include "tools/prepare/brick_round.h"
 #include "tools/tuning/brick_rounds_tuning.h"
 
@@ -21,6 +20,12 @@ std::vector<std::size_t> meeting_in(const BrickStore& store, const Progress& pro
   return meeting_parts(boundaries);
 }
 
+BrickPart make_again(BrickPieces pieces, const BrickTask& task, const RoundsJob& job, Progress& progress) {
+  CoarsenOptions coarsening = job.coarsening;
+  coarsening.tets_for_final = BrickRoundsTuning::tets_for_final[static_cast<std::size_t>(task.round - 1)];
+  return coarsen_pieces(std::move(pieces), task, job.density, job.field, coarsening, &progress);
+}
+
 GatheredMesh coarsen_again(BrickStore& first, const RoundsJob& job, std::map<MaterialTag, std::string> names,
                            PrepareRun& run) {
   BrickReport& report = *run.report.bricks;
@@ -32,15 +37,13 @@ GatheredMesh coarsen_again(BrickStore& first, const RoundsJob& job, std::map<Mat
         ShiftedBricks(job.labels, job.cell, job.plan.cells, round), before.count(),
         [&](std::size_t p) { return before.part(p); }, run.progress);
     if (round == 2) shared_points = bricks.shared_points();
-    CoarsenOptions coarsening = job.coarsening;
-    coarsening.tets_for_final = BrickRoundsTuning::tets_for_final[static_cast<std::size_t>(round - 1)];
+    const auto pieces = [&](const BrickTask& task) { return bricks.pieces(task.brick, &run.progress); };
     auto next = std::make_unique<BrickStore>(bricks.boxes(), run.scratch.get(), round, report);
     BrickRound made(
-        *next, bricks.tets(), job.plan.workers, nullptr,
-        [&](const BrickTask& task) {
-          return bricks.make(task, job.density, job.field, coarsening, &run.progress);
-        },
-        run.progress);
+        *next, bricks.tets(),
+        {job.plan.workers, run.options.bricks.team,
+         [&](const BrickTask& task) { return make_again(pieces(task), task, job, run.progress); }, pieces},
+        report, run.progress);
     made.make_all();
     report.surfaces_kept += made.separate([&] { return meeting_in(*next, run.progress); });
     before.drop_meshes();

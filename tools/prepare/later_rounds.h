@@ -12,6 +12,7 @@
 #include "tools/bricks/brick_estimate.h"
 #include "tools/bricks/brick_store.h"
 #include "tools/bricks/gathered_mesh.h"
+#include "tools/bricks/regrouped_bricks.h"
 
 namespace tetwright {
 
@@ -29,7 +30,11 @@ struct RoundsJob {
   std::shared_ptr<const MaterialField> field;
 };
 
-/// Carries out the rounds after the first, in this process alone, and joins the parts of the last one.
+/// Makes a brick of a round after the first from its pieces.
+/// \throws Interrupted, OutOfTime
+BrickPart make_again(BrickPieces pieces, const BrickTask& task, const RoundsJob& job, Progress& progress);
+
+/// Carries out the rounds after the first, and joins the parts of the last one.
 /// \param first the parts of the first round; moved out of memory
 /// \param names of the materials
 /// \return no bricks meet

@@ -354,14 +354,16 @@ void add_mesher_json(const MesherReport& m, nlohmann::json& dense) {
 }
 
 nlohmann::json bricks_json(const BrickReport& bricks) {
-  return {{"cells", bricks.cells},
-          {"count", bricks.bricks},
-          {"rounds", bricks.rounds},
-          {"repeated", bricks.repeated},
-          {"surfaces_kept", bricks.surfaces_kept},
-          {"resumed", bricks.resumed},
-          {"coarse_tets", bricks.coarse_tets},
-          {"scratch_bytes", static_cast<std::uint64_t>(bricks.scratch_bytes)}};
+  nlohmann::json json = {{"cells", bricks.cells},
+                         {"count", bricks.bricks},
+                         {"rounds", bricks.rounds},
+                         {"repeated", bricks.repeated},
+                         {"surfaces_kept", bricks.surfaces_kept},
+                         {"resumed", bricks.resumed},
+                         {"coarse_tets", bricks.coarse_tets},
+                         {"scratch_bytes", static_cast<std::uint64_t>(bricks.scratch_bytes)}};
+  if (!bricks.by_helpers.empty()) json["by_helpers"] = bricks.by_helpers;
+  return json;
 }
 
 /// Diagnostics of the report, and the error if there is no result.
@@ -427,6 +429,8 @@ std::string stats_json(const CommandRun& ended) {
   if (!run.values.empty()) j["values"] = values_json(run.values);
   if (!run.bins.empty()) j["bins"] = bins_json(run.bins);
   if (ended.parts) j["parts"] = partition_json(*ended.parts);
+  if (ended.pieces_by_helpers) j["parts"]["by_helpers"] = *ended.pieces_by_helpers;
+  if (ended.hdf5_ranks) j["parts"]["hdf5_ranks"] = *ended.hdf5_ranks;
   if (run.edge_lengths) j["edge_lengths"] = edge_lengths_json(*run.edge_lengths, run.sizes);
   if (run.crease_comparison) j["creases"] = creases_json(*run.crease_comparison);
   j["iterations"] = nlohmann::json::array();

@@ -53,12 +53,22 @@ class OutputFiles {
   void write(const std::string& path, const std::function<void(const ByteSink&)>& content);
   void write(const std::string& path, std::string_view bytes);
 
+  /// Makes the empty temporary file of a target for write_reserved_file(), in this process or another one, to
+  /// be called before commit().
+  /// \return absolute path of the temporary file
+  /// \throws OutputError if it cannot be made
+  std::string reserve(const std::string& path);
+
   /// Renames all files over their targets. Further files may be written afterwards.
   /// \throws OutputError if a file cannot be renamed
   void commit();
 
+  const Progress* progress() const { return progress_; }
+
  private:
   struct Pending;
+  std::unique_ptr<Pending> make_pending(const std::string& path) const;
+
   const Progress* progress_;
   std::vector<std::unique_ptr<Pending>> pending_;
   std::string to_stdout_;
@@ -67,6 +77,15 @@ class OutputFiles {
 /// Writes one file completely or not at all, as OutputFiles does.
 void write_file_atomically(const std::string& path, std::string_view bytes);
 void write_file_atomically(const std::string& path, const std::function<void(const ByteSink&)>& content);
+
+/// Writes the content of a file that OutputFiles::reserve() made, and syncs it to disk. Any process that sees
+/// its folder may do so, and different files may be written concurrently.
+/// \param path the target, for messages
+/// \throws OutputError if the file cannot be written, or is not there
+/// \param progress as for OutputFiles
+void write_reserved_file(const std::string& temporary, const std::string& path,
+                         const std::function<void(const ByteSink&)>& content,
+                         const Progress* progress = nullptr);
 
 /// Removes temporary files next to `path` that belong to a process which ended without cleaning up.
 void remove_temporary_files(const std::string& path, int process) noexcept;

@@ -289,16 +289,6 @@ class Msh4PieceWriter {
   std::vector<Part> parts_;  ///< surfaces, volumes, ghosts; those with elements
 };
 
-void write_all_msh_pieces(const MeshPieces& pieces, const std::string& path, bool binary,
-                          OutputFiles& files) {
-  const std::vector<std::string> names = files_of_msh_pieces(path, pieces.whole().parts);
-  for (PartNumber part = 0; part < pieces.whole().parts; ++part) {
-    const MeshPiece piece = pieces.piece(part);
-    files.write(names[part],
-                [&](const ByteSink& sink) { write_msh41_piece(piece, pieces.whole(), binary, sink); });
-  }
-}
-
 }  // namespace
 
 void write_msh41_piece(const MeshPiece& piece, const DividedMesh& whole, bool binary, const ByteSink& sink) {
@@ -312,14 +302,6 @@ std::vector<std::string> files_of_msh_pieces(const std::string& path, PartNumber
   for (PartNumber part = 0; part < parts; ++part)
     files.push_back(std::string(stem).append("_").append(std::to_string(part + 1)).append(extension));
   return files;
-}
-
-void write_msh41_pieces(const MeshPieces& pieces, const std::string& path, OutputFiles& files) {
-  write_all_msh_pieces(pieces, path, false, files);
-}
-
-void write_msh41_binary_pieces(const MeshPieces& pieces, const std::string& path, OutputFiles& files) {
-  write_all_msh_pieces(pieces, path, true, files);
 }
 
 }  // namespace tetwright

@@ -20,8 +20,4 @@ void write_msh41_piece(const MeshPiece& piece, const DividedMesh& whole, bool bi
 /// The files NAME_1.msh, NAME_2.msh and so on.
 std::vector<std::string> files_of_msh_pieces(const std::string& path, PartNumber parts);
 
-/// Write all these files.
-void write_msh41_pieces(const MeshPieces& pieces, const std::string& path, OutputFiles& files);
-void write_msh41_binary_pieces(const MeshPieces& pieces, const std::string& path, OutputFiles& files);
-
 }  // namespace tetwright

@@ -38,7 +38,4 @@ void write_pvtu_index(const DividedMesh& whole, const std::string& stem, const B
 /// The .pvtu file and its pieces NAME_0.vtu, NAME_1.vtu and so on.
 std::vector<std::string> files_of_pvtu(const std::string& path, PartNumber parts);
 
-/// Writes all these files.
-void write_pvtu(const MeshPieces& pieces, const std::string& path, OutputFiles& files);
-
 }  // namespace tetwright

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
-#include <filesystem>
 #include <utility>
 
 #include "common/files/file_names.h"
@@ -164,17 +163,6 @@ std::vector<std::string> files_of_pvtu(const std::string& path, PartNumber parts
   for (PartNumber part = 0; part < parts; ++part) files.push_back(name_of_piece(stem, part));
   files.push_back(index);
   return files;
-}
-
-void write_pvtu(const MeshPieces& pieces, const std::string& path, OutputFiles& files) {
-  const DividedMesh& whole = pieces.whole();
-  const std::vector<std::string> names = files_of_pvtu(path, whole.parts);
-  for (PartNumber part = 0; part < whole.parts; ++part) {
-    const MeshPiece piece = pieces.piece(part);
-    files.write(names[part], [&](const ByteSink& sink) { write_vtu_piece(piece, whole, sink); });
-  }
-  const std::string stem = std::filesystem::path(names.back()).stem().string();
-  files.write(names.back(), [&](const ByteSink& sink) { write_pvtu_index(whole, stem, sink); });
 }
 
 }  // namespace tetwright

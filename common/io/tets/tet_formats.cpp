@@ -7,6 +7,8 @@
 #include "common/files/file_names.h"
 #include "common/io/elements/vtk_cells.h"
 #include "common/io/elements/vtk_pieces.h"
+#include "common/io/encodings/hdf5_file.h"
+#include "common/io/encodings/hdf5_image.h"
 #include "common/io/tets/abaqus.h"
 #include "common/io/tets/febio.h"
 #include "common/io/tets/medit.h"
@@ -56,6 +58,11 @@ ReadTetMesh read_tetgen_files(const std::string& path, const ReadTetMeshOptions&
   return read_tetgen({node_bytes, node}, {ele_bytes, ele}, faces, options);
 }
 
+template <bool binary>
+void write_msh_piece(const MeshPiece& piece, const DividedMesh& whole, const ByteSink& sink) {
+  write_msh41_piece(piece, whole, binary, sink);
+}
+
 std::vector<std::string> only_this_file(const std::string& path, PartNumber /*parts*/) { return {path}; }
 
 template <void (*write)(const MeshToWrite&, const ByteSink&)>
@@ -68,11 +75,19 @@ void write_as_one(const MeshToWrite& mesh, const std::string& /*first*/, const B
   sink(write(mesh));
 }
 
+template <void (*add)(const MeshToWrite&, Hdf5Writer&)>
+void write_image(const MeshToWrite& mesh, const std::string& /*first*/, const ByteSink& sink) {
+  Hdf5Image image;
+  add(mesh, image);
+  sink(image.bytes());
+}
+
 const std::vector<WrittenFile>& xdmf_files() {
-  static const std::vector<WrittenFile> files{{".h5", write_alone<write_xdmf_numbers>},
-                                              {".xdmf", write_xdmf_mesh},
-                                              {"_facets.h5", write_alone<write_xdmf_facet_numbers>},
-                                              {"_facets.xdmf", write_xdmf_facets}};
+  static const std::vector<WrittenFile> files{
+      {".h5", write_image<add_xdmf_numbers>, add_xdmf_numbers},
+      {".xdmf", write_xdmf_mesh},
+      {"_facets.h5", write_image<add_xdmf_facet_numbers>, add_xdmf_facet_numbers},
+      {"_facets.xdmf", write_xdmf_facets}};
   return files;
 }
 
@@ -83,13 +98,20 @@ std::vector<std::string> files_of_xdmf(const std::string& path, PartNumber /*par
 }
 
 /// Writes the mesh as one, with the tets of each part in succession.
-void write_xdmf_parts(const MeshPieces& pieces, const std::string& path, OutputFiles& files) {
+void write_xdmf_parts(const MeshPieces& pieces, const std::string& path, OutputFiles& files,
+                      const FileSharing* share) {
   const OrderedMesh ordered = ordered_by_part(pieces);
   const MeshToWrite mesh(ordered.mesh, ordered.midside ? &*ordered.midside : nullptr);
   const std::vector<std::string> paths = files_of_xdmf(path, pieces.whole().parts);
   const std::string first = std::filesystem::path(paths.front()).filename().string();
-  for (std::size_t i = 0; i < paths.size(); ++i)
-    files.write(paths[i], [&](const ByteSink& sink) { xdmf_files()[i].write(mesh, first, sink); });
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const WrittenFile& file = xdmf_files()[i];
+    if (file.add)
+      write_hdf5_file(
+          paths[i], files, [&](Hdf5Writer& writer) { file.add(mesh, writer); }, share);
+    else
+      files.write(paths[i], [&](const ByteSink& sink) { file.write(mesh, first, sink); });
+  }
 }
 
 template <NameRules (*rules)()>
@@ -126,7 +148,8 @@ const std::vector<TetFormat>& tet_formats() {
        .name = "pvtu",
        .read_files = read_pvtu_files,
        .part_files = {.names = files_of_pvtu,
-                      .write = write_pvtu,
+                      .write_piece = write_vtu_piece,
+                      .write_index = write_pvtu_index,
                       .own_point_fields = own_vtk_points,
                       .own_cell_fields = own_vtk_cells},
        .parts = vtk_piece_parts,
@@ -154,7 +177,7 @@ const std::vector<TetFormat>& tet_formats() {
        .name = "msh41",
        .read = read_msh,
        .write = {{".msh", write_alone<write_msh41>}},
-       .part_files = {files_of_msh_pieces, write_msh41_pieces},
+       .part_files = {.names = files_of_msh_pieces, .write_piece = write_msh_piece<false>},
        .parts = msh_parts,
        .field_name = msh_name,
        .second_order = true,
@@ -163,7 +186,7 @@ const std::vector<TetFormat>& tet_formats() {
        .name = "msh41-binary",
        .read = read_msh,
        .write = {{".msh", write_alone<write_msh41_binary>}},
-       .part_files = {files_of_msh_pieces, write_msh41_binary_pieces},
+       .part_files = {.names = files_of_msh_pieces, .write_piece = write_msh_piece<true>},
        .parts = msh_parts,
        .field_name = msh_name,
        .second_order = true,

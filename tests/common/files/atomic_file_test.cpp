@@ -29,6 +29,33 @@ TEST_F(AtomicFile, NewAndReplaced) {
   EXPECT_EQ(read_whole_file(path("a")), std::string("sec\0nd", 6));
 }
 
+TEST_F(AtomicFile, AReservedFileIsWrittenByAnyone) {
+  put(path("a"), "old");
+  chmod(path("a").c_str(), 0640);
+  {
+    OutputFiles files;
+    const std::string temporary = files.reserve(path("a"));
+    write_reserved_file(temporary, path("a"), [](const ByteSink& sink) { sink("longer"); });
+    write_reserved_file(temporary, path("a"), [](const ByteSink& sink) { sink("new"); });
+    EXPECT_EQ(get(path("a")), "old");
+    files.commit();
+    EXPECT_EQ(get(path("a")), "new");
+    struct stat status;
+    ASSERT_EQ(stat(path("a").c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 0777, 0640u);
+    const std::string unused = files.reserve(path("b"));
+    EXPECT_TRUE(std::filesystem::path(unused).is_absolute());
+    EXPECT_EQ(this->files(), 2u);
+  }
+  EXPECT_EQ(this->files(), 1u);
+  // As on a machine that has another folder.
+  EXPECT_NE(error_of<OutputError>([&] {
+              write_reserved_file(path("gone"), path("b"), [](const ByteSink& sink) { sink("x"); });
+            }).find("all processes must see the folder"),
+            std::string::npos);
+  EXPECT_EQ(this->files(), 1u);
+}
+
 TEST_F(AtomicFile, ALinkStaysAndItsTargetIsReplaced) {
   namespace fs = std::filesystem;
   fs::create_directory(path("sub"));

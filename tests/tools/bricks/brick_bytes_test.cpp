@@ -129,6 +129,41 @@ TEST(BrickBytes, AllMembersReturn) {
   EXPECT_EQ(to_bytes(brick_part(bytes, "brick-7")), bytes);
 }
 
+BrickRequest small_request() {
+  BrickRequest request{{7, 16, true, true, 3}, {}};
+  BrickPieces& pieces = request.pieces;
+  pieces.brick = {{1, 2, 3}, {4, 5, 6}};
+  pieces.parts = {small_part(), {}, small_part()};
+  pieces.parts.back().mesh.points.front().x() = 7;
+  pieces.shared = {{0.1, -0.0, 1e-300}, {8, 9, 10}};
+  return request;
+}
+
+TEST(BrickBytes, ARequestReturns) {
+  const BrickRequest request = small_request();
+  const BrickPieces& pieces = request.pieces;
+  const std::string bytes = to_bytes(request);
+  const BrickRequest returned = brick_request(bytes, "brick 7");
+  const BrickPieces& read = returned.pieces;
+  EXPECT_EQ(returned.task.brick, request.task.brick);
+  EXPECT_EQ(returned.task.halo, request.task.halo);
+  EXPECT_TRUE(returned.task.keep_surface && returned.task.thin);
+  EXPECT_EQ(returned.task.round, request.task.round);
+  EXPECT_EQ(read.brick, pieces.brick);
+  EXPECT_TRUE(same_bits(read.shared, pieces.shared));
+  ASSERT_EQ(read.parts.size(), pieces.parts.size());
+  for (std::size_t p = 0; p < read.parts.size(); ++p) {
+    BrickPart used;  // of a part, its mesh and flags
+    used.mesh = pieces.parts[p].mesh;
+    used.flags = pieces.parts[p].flags;
+    expect_equal(read.parts[p], used);
+  }
+  EXPECT_EQ(to_bytes(returned), bytes);
+  for (std::size_t size = 0; size < bytes.size(); ++size)
+    EXPECT_THROW((void)brick_request(bytes.substr(0, size), "brick 7"), InputError) << size;
+  EXPECT_THROW((void)brick_request(to_bytes(small_part()), "brick 7"), InputError);
+}
+
 TEST(BrickBytes, AnEmptyPartReturns) {
   const BrickPart part;  // its dihedral angles are NaN
   expect_equal(part, brick_part(to_bytes(part), "brick-7"));

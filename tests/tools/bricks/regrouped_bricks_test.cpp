@@ -45,7 +45,7 @@ constexpr double keep_all = 1e6;
 std::vector<BrickPart> make_all(const RegroupedBricks& regrouped, double density) {
   std::vector<BrickPart> made;
   for (std::size_t b = 0; b < regrouped.count(); ++b)
-    made.push_back(regrouped.make({b, 0, false}, density, nullptr, {}, nullptr));
+    made.push_back(coarsen_pieces(regrouped.pieces(b, nullptr), {b}, density, nullptr, {}, nullptr));
   return made;
 }
 
@@ -123,8 +123,9 @@ TEST(RegroupedBricks, KeptSurfacesDoNotMove) {
     return faces;
   };
   const BrickTask task{7, 0, true};
-  const BrickPart all = regrouped.make(task, keep_all, nullptr, {}, nullptr),
-                  kept = regrouped.make(task, 0.01, nullptr, {}, nullptr);
+  const BrickPieces pieces = regrouped.pieces(task.brick, nullptr);
+  const BrickPart all = coarsen_pieces(pieces, task, keep_all, nullptr, {}, nullptr),
+                  kept = coarsen_pieces(pieces, task, 0.01, nullptr, {}, nullptr);
   EXPECT_TRUE(kept.kept_surface);
   EXPECT_LT(kept.mesh.tets.size(), all.mesh.tets.size());
   // The border of the volume has patches on two sides only; the others count as a boundary that may meet.

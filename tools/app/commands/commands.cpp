@@ -57,9 +57,11 @@ Prepared make_result(CommandRun& run) {
   options.keep.field = !line.outputs.distances.empty();
   // Measured: the text of the file is in memory in addition to the mesh.
   constexpr double text_bytes = 130;
-  constexpr double parts_bytes = 180;  // measured: faces of all tets, their graph and a piece
+  constexpr double parts_bytes = 180;    // measured: faces of all tets, their graph and a piece
+  constexpr double message_bytes = 150;  // a piece for another member of a team, and its bytes
   if (line.outputs.parts > 0)
-    options.limits.later_bytes_per_tet = parts_bytes;
+    options.limits.later_bytes_per_tet =
+        parts_bytes + (options.bricks.team ? message_bytes / line.outputs.parts : 0);
   else if (!line.outputs.mesh.ends_with(".vtu"))
     options.limits.later_bytes_per_tet = text_bytes;
   PrepareRun preparing(task_of(line.command), options, run.progress, run.report);

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "tetwright/file_sharing.h"
 #include "tetwright/files.h"
 #include "tetwright/io.h"
 #include "tetwright/partition.h"
@@ -12,6 +13,7 @@
 #include "tools/app/commands/output_paths.h"
 #include "tools/app/commands/report_file.h"
 #include "tools/app/printed_report.h"
+#include "tools/bricks/process_team.h"
 #include "tools/report/stats_json.h"
 
 namespace tetwright {
@@ -26,12 +28,23 @@ TetMesh without_triangles(TetMesh mesh) {
 }
 
 void write_mesh(const TetMesh& mesh, const Prepared& result, const std::optional<TetPartition>& partition,
-                const OutputOptions& outputs, OutputFiles& files) {
+                CommandRun& run, OutputFiles& files) {
+  const OutputOptions& outputs = run.line.outputs;
   const MeshToWrite written(mesh, result.midside ? &*result.midside : nullptr, result.bins);
-  if (partition)
-    write_tet_mesh(written, *partition, outputs.mesh, &files, outputs.format);
-  else
+  if (!partition) {
     write_tet_mesh(written, outputs.mesh, &files, outputs.format);
+    return;
+  }
+  FileSharing share;
+  ProcessTeam* const team = run.line.options.bricks.team;
+  if (team)
+    share.pieces = [&run, team](const PiecesToWrite& pieces) {
+      run.pieces_by_helpers =
+          team->lead({pieces.count, pieces.here, pieces.order, [](std::size_t, const std::string&) {}});
+    };
+  if (team && team->writes_hdf5())
+    share.hdf5 = [&run, team](const auto&... file) { run.hdf5_ranks = team->write_hdf5(file...); };
+  write_tet_mesh(written, *partition, outputs.mesh, &files, outputs.format, &share);
 }
 
 }  // namespace
@@ -49,9 +62,10 @@ void write_result(Prepared& result, CommandRun& run) {
     run.parts = partition_statistics(result.mesh, *partition);
   }
   if (line.outputs.no_boundary)
-    write_mesh(without_triangles(result.mesh), result, partition, line.outputs, files);
+    write_mesh(without_triangles(result.mesh), result, partition, run, files);
   else
-    write_mesh(result.mesh, result, partition, line.outputs, files);
+    write_mesh(result.mesh, result, partition, run, files);
+  if (line.options.bricks.team) line.options.bricks.team->end();
   if (const std::string table = bins_table_of(line); !table.empty())
     files.write(table, table_of_bins(result.mesh, result.bins));
   if (!line.outputs.boundary.empty())

@@ -221,6 +221,7 @@ std::map<MaterialTag, std::string> parse_label_names(
     std::map<MaterialTag, std::size_t>* line_numbers = nullptr);
 
 class OutputFiles;
+struct FileSharing;
 
 /// Kind of a file, determined by the extension in upper or lower case, or of a folder to read, by its files.
 enum class FileKind {
@@ -418,8 +419,10 @@ void write_tet_mesh(const MeshToWrite& mesh, const std::string& path, OutputFile
 /// Writes a mesh in parts, each with the tets of other parts that share a point with one of its own, as
 /// parallel solvers read them.
 /// \throws UsageError also if the format cannot hold parts
+/// \param share writes files together with other processes; null: this one writes them
 void write_tet_mesh(const MeshToWrite& mesh, const TetPartition& partition, const std::string& path,
-                    OutputFiles* files = nullptr, const std::string& format = {});
+                    OutputFiles* files = nullptr, const std::string& format = {},
+                    const FileSharing* share = nullptr);
 /// Writes the boundary and the interfaces of the mesh as a surface with the names of its groups.
 void write_interfaces(const TetMesh& mesh, const std::string& path, OutputFiles* files = nullptr,
                       const std::string& format = {});

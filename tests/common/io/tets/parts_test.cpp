@@ -13,6 +13,7 @@
 #include "common/samples/samples.h"
 #include "tests/common/temporary_folder.h"
 #include "tetwright/error.h"
+#include "tetwright/file_sharing.h"
 #include "tetwright/io.h"
 #include "tetwright/mesh_quality.h"
 
@@ -109,6 +110,61 @@ TEST(PartsInMsh, EachFileHasItsTetsItsGhostsAndTheirOwners) {
   EXPECT_EQ(triangles, mesh.interfaces.size());
 }
 
+/// Expects the same bytes if every second piece is written from its bytes alone.
+void expect_shared(const TetMesh& mesh, const MidsideNodes* midside, const TetPartition& partition,
+                   const std::string& file, const std::string& format) {
+  const TemporaryFolder alone, shared;
+  write_tet_mesh({mesh, midside}, partition, alone / file, nullptr, format);
+  std::size_t ordered = 0;
+  const FileSharing share{[&](const PiecesToWrite& pieces) {
+    EXPECT_EQ(pieces.count, partition.parts);
+    for (std::size_t p = pieces.count; p-- > 0;) {
+      if (p % 2 == 0) {
+        pieces.here(p);
+        continue;
+      }
+      const std::string order = pieces.order(p);
+      write_ordered_piece(order);
+      ++ordered;
+      EXPECT_THROW(write_ordered_piece(std::string_view(order).substr(0, order.size() - 1)), InputError);
+    }
+  }};
+  write_tet_mesh({mesh, midside}, partition, shared / file, nullptr, format, &share);
+  EXPECT_EQ(ordered, partition.parts / 2);
+  EXPECT_EQ(shared.entries(), alone.entries());
+  for (const std::string& name : files_of_tet_mesh(alone / file, format, partition.parts)) {
+    const std::string last = std::filesystem::path(name).filename().string();
+    EXPECT_TRUE(contents(shared / last) == contents(alone / last)) << last;
+  }
+}
+
+TEST(PartsInFiles, PiecesAreWrittenByOthers) {
+  TetMesh mesh = sample_mesh();
+  mesh.patch_groups[{mesh.interfaces[0].pair(), 0}] = {7, "side"};
+  mesh.material_names = {{mesh.materials[0], "first"}};
+  mesh.cell_fields.push_back({"whole", 2, true, std::vector<double>(2 * mesh.tets.size(), 5)});
+  TetPartition partition{.parts = 5, .part_of = {}};
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    partition.part_of.push_back(static_cast<PartNumber>(t * 5 / mesh.tets.size()));
+  const MidsideNodes midside = straight_midside_nodes(mesh);
+  for (const MidsideNodes* nodes : {static_cast<const MidsideNodes*>(nullptr), &midside}) {
+    expect_shared(mesh, nodes, partition, "m.pvtu", "");
+    expect_shared(mesh, nodes, partition, "m.msh", "");
+    expect_shared(mesh, nodes, partition, "m.msh", "msh41-binary");
+  }
+}
+
+TEST(PartsInFiles, NothingIsLeftIfAPieceFails) {
+  const TemporaryFolder f;
+  const TetMesh mesh = sample_mesh();
+  const FileSharing share{[](const PiecesToWrite& pieces) {
+    write_ordered_piece(pieces.order(0));
+    throw OutputError("the disk is full");
+  }};
+  EXPECT_THROW(write_tet_mesh(mesh, halves(mesh), f / "m.pvtu", nullptr, "", &share), OutputError);
+  EXPECT_EQ(f.entries(), 0u);
+}
+
 TEST(PartsInMsh, FilesAreNumberedFromOne) {
   EXPECT_EQ(files_of_msh_pieces("a/m.msh", 2), (std::vector<std::string>{"a/m_1.msh", "a/m_2.msh"}));
 }
@@ -149,7 +205,9 @@ TEST(PartsInVtkHdf, EqualMeshesGiveEqualBytes) {
   const auto bytes = [&] {
     VtkHdfWriter writer(pieces.whole());
     for (PartNumber part = 0; part < 2; ++part) writer.add(pieces.piece(part));
-    return writer.bytes();
+    Hdf5Image file;
+    writer.write(file);
+    return file.bytes();
   };
   EXPECT_EQ(bytes(), bytes());
 }

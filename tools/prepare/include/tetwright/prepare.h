@@ -188,7 +188,7 @@ struct BodyOptions {
 };
 
 class BrickScratch;
-class BrickTeam;
+class ProcessTeam;
 
 /// Meshing and coarsening of a segmented volume in bricks, so that its dense mesh is never in memory at once.
 /// For prepare().
@@ -210,7 +210,7 @@ struct BrickOptions {
   std::string scratch;
   std::function<void()> when_kept;  ///< called before bricks are written to `scratch`; may be empty
   /// Processes that make the bricks together; null: this one alone. Must outlive the call.
-  BrickTeam* team = nullptr;
+  ProcessTeam* team = nullptr;
 };
 inline constexpr int min_brick_cells = 32, max_brick_cells = 1024, default_brick_cells = 128;
 inline constexpr int max_brick_rounds = 3;
@@ -394,8 +394,10 @@ struct BrickReport {
   std::size_t repeated = 0;       ///< times that a brick was made again with more cells around it
   std::size_t surfaces_kept = 0;  ///< bricks made again with their boundary as it is, since it met another's
   std::size_t resumed = 0;        ///< bricks of all rounds that were finished before
-  std::size_t coarse_tets = 0;    ///< tets of all coarsened bricks
-  double scratch_bytes = 0;       ///< of all bricks' files
+  /// Bricks that other members of a team made, by round; empty without a team.
+  std::vector<std::size_t> by_helpers;
+  std::size_t coarse_tets = 0;  ///< tets of all coarsened bricks
+  double scratch_bytes = 0;     ///< of all bricks' files
 };
 
 /// Report of a run. Members that belong to steps which are not run stay empty.

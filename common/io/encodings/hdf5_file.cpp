@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "common/io/encodings/hdf5_file.h"
+
+#include "common/io/encodings/hdf5_image.h"
+
+namespace tetwright {
+
+void write_hdf5_file(const std::string& path, OutputFiles& files,
+                     const std::function<void(Hdf5Writer&)>& content, const FileSharing* share) {
+  if (share && share->hdf5) {
+    share->hdf5(files.reserve(path), path, content);
+    return;
+  }
+  Hdf5Image image;
+  content(image);
+  const std::string bytes = image.bytes();
+  files.write(path, bytes);
+}
+
+}  // namespace tetwright
