@@ -116,8 +116,8 @@ struct LabelTuning {
     /// Steps along the normal in which the other side is looked for, and bisections of the one that has it.
     static constexpr int steps = 8, bisections = 6;
     /// Min distance from the interface, as a share of the thickness along the normal: a wedge of more than
-    /// some 35 degrees is no film, and smaller cells would only resolve what coarse ones snap.
-    static constexpr double min_parallel = 0.8;
+    /// some 25 degrees is no film, and smaller cells would only resolve what coarse ones snap.
+    static constexpr double min_parallel = 0.9;
     /// Positions along a crease, cells, at which an interface must be near if it runs along the crease.
     static constexpr double beside[] = {-1, 0, 1};
   };
