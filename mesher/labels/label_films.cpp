@@ -49,7 +49,7 @@ class FilmProbe {
     const Vec3 start = point + inside * normal;
     if (to_border(start) < 0) return {};
     const NearestRegion here = sampler_->nearest(start);
-    // What is not meshed has no film at the border, but gaps to labels.
+    // An outside that is not meshed has no film at the border, but gaps to labels.
     const bool is_meshed = here.region != outside_region || options_.keep_outside;
     const bool near_interface = inside + here.margin <= Films::max_thickness;
     const auto is_across = [&](double off) {

@@ -11,7 +11,7 @@
 
 namespace tetwright {
 
-/// What find_films() knows of the surroundings of bodies. Lengths are in cells of the unrefined frame.
+/// Surroundings of bodies. Lengths are in cells of the unrefined frame.
 struct FilmOptions {
   double layer;       ///< thickness of the layer around bodies, see CarvedField; cells become no smaller
   double min_film;    ///< thinner films are left to that layer

@@ -165,7 +165,7 @@ struct CellTuning {
     /// Cells for the mean thickness of a body in a volume, which is twice its volume by its area: four across
     /// a plate, eight across a rod. With half as many, edges that cross interfaces of labels are not exact.
     static constexpr double cells_of_body = 4;
-    /// The same for a body without sharp edges, whose points are not fitted to its surface: cells cut 4 % off
+    /// Likewise for a body without sharp edges, whose points are not fitted to its surface: cells cut 4 % off
     /// a ball of three, and 1 % off one of six.
     static constexpr double cells_of_smooth_body = 8;
     /// Sharp edges turn by more than this, radians; a smooth body has at most this share of its curvature at
