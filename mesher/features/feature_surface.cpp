@@ -88,6 +88,7 @@ void FeatureSurface::find_flat_patches() {
   });
   flat_.resize(planes.size());
   std::transform(planes.begin(), planes.end(), flat_.begin(), [](const Plane& p) { return p.area > 0; });
+  std::fill_n(flat_.begin() + 1, border_sides, 1);
   for_each_triangle([&](const Plane& plane, std::uint32_t patch, std::size_t, const std::array<Vec3, 3>& c) {
     const double at_most = CutTuning::Labelling::flat_share * (plane.box.high - plane.box.low).norm();
     for (const Vec3& p : c)

@@ -3,6 +3,7 @@
 // Tests of surfaces in segmented volumes, through the program.
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
@@ -184,6 +185,32 @@ TEST_F(Implants, FacesCloseToAnInterface) {
     EXPECT_GT(stats().at("result").at("min_dihedral"), 8) << gap;
     EXPECT_EQ(stats().at("creases").at("lost_corners"), 0) << gap;
   }
+}
+
+// A face of a box lies nearly in the border of the volume, and crosses it.
+TEST_F(Implants, LabelsStayWithinTheBorder) {
+  LabelVolume all;
+  all.size = {20, 24, 60};
+  all.space = "right-anterior-superior";
+  all.labels.assign(20 * 24 * 60, 1);
+  write_label_volume(all, folder_ / "all.nrrd");
+  TriangleMesh turned = make_box({-0.5, 6.3, 12}, {7.6, 16.7, 46});
+  const Eigen::AngleAxisd turn(M_PI / 180, Vec3::UnitY());
+  const Vec3 centre(-0.5, 0, 30);
+  for (Vec3& p : turned.points) p = centre + turn * (p - centre);
+  write_surface(turned, folder_ / "box.stl");
+  run("prepare " + (folder_ / "all.nrrd") + " --material box=" + (folder_ / "box.stl") +
+      " --surface-space RAS --target-tets 3000 -o " + (folder_ / "p.vtu"));
+  const TetMesh mesh = read_tet_mesh(folder_ / "p.vtu").mesh;
+  std::vector<std::uint8_t> on_body(mesh.points.size(), 0);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t)
+    if (mesh.material_names.at(mesh.materials[t]) == "box")
+      for (const Index p : mesh.tets[t]) on_body[p] = 1;
+  double beyond = 0;
+  for (std::size_t p = 0; p < mesh.points.size(); ++p)
+    if (!on_body[p]) beyond = std::max(beyond, -0.5 - mesh.points[p].x());
+  EXPECT_GT(mesh.tets.size(), 2000U);
+  EXPECT_LT(beyond, 1e-6);
 }
 
 // Cells of a voxel would cut 4 % off.
