@@ -17,10 +17,6 @@
 
 #include "tetwright/error.h"
 #include "tools/app/exit_status.h"
-#ifdef TETWRIGHT_PARALLEL_HDF5
-#include "common/files/byte_archive.h"
-#include "tools/mpi/parallel_hdf5.h"
-#endif
 
 namespace tetwright {
 
@@ -37,8 +33,7 @@ enum Tag : int {
 
 using Job = std::array<std::int64_t, 1>;   ///< hash
 using Item = std::array<std::int64_t, 2>;  ///< task and number of bytes
-/// No task; a file for all to write: its names, then one content after the other.
-constexpr std::int64_t no_task = -1, hdf5_file = -2;
+constexpr std::int64_t no_task = -1;
 
 /// Bytes: MPI counts them by an int.
 constexpr std::size_t max_message = std::size_t{1} << 30;
@@ -217,70 +212,14 @@ bool MpiTeam::helper_asked() {
   return true;
 }
 
-void MpiTeam::wait_for_helper() {
-  while (!helper_asked()) {
-    progress_->throw_if_stopped();
-    std::this_thread::sleep_for(between_looks);
-  }
-}
-
-#ifdef TETWRIGHT_PARALLEL_HDF5
-
-bool MpiTeam::writes_hdf5() const { return true; }
-
-std::size_t MpiTeam::write_hdf5(const std::string& temporary, const std::string& path,
-                                const std::function<void(Hdf5Writer&)>& content) {
-  while (waiting_.size() + 1 < static_cast<std::size_t>(size_)) wait_for_helper();
-  ByteWriter names;
-  names(temporary, path);
-  for (const int helper : waiting_) send_item(hdf5_file, names.bytes, helper, order);
-  waiting_.clear();
-  ParallelHdf5 file(temporary, path,
-                    {[&](const std::string& bytes, int helper) {
-                       progress_->throw_if_stopped();
-                       send_item(hdf5_file, bytes, helper, order);
-                     },
-                     {}});
-  content(file);
-  file.close();
-  return static_cast<std::size_t>(size_);
-}
-
-namespace {
-
-/// A helper's part of write_hdf5().
-void help_with_hdf5(const std::string& order_of_file) {
-  std::string temporary, path;
-  ByteReader(order_of_file, "a file", "the message with its name is incomplete")(temporary, path);
-  ParallelHdf5(temporary, path,
-               {{},
-                [] {
-                  wait_for(0, order);
-                  return receive_item(0, order).second;
-                }})
-      .follow();
-}
-
-}  // namespace
-
-#else
-
-bool MpiTeam::writes_hdf5() const { return false; }
-std::size_t MpiTeam::write_hdf5(const std::string&, const std::string&,
-                                const std::function<void(Hdf5Writer&)>&) {
-  throw InternalError("this build has no parallel HDF5");
-}
-namespace {
-void help_with_hdf5(const std::string&) { throw InternalError("this build has no parallel HDF5"); }
-}  // namespace
-
-#endif
-
 void MpiTeam::end() {
   std::set<int> ended;
   std::deque<int> for_next_kind;
   while (ended.size() + 1 < static_cast<std::size_t>(size_)) {
-    if (waiting_.empty()) wait_for_helper();
+    while (waiting_.empty() && !helper_asked()) {
+      progress_->throw_if_stopped();
+      std::this_thread::sleep_for(between_looks);
+    }
     const int helper = waiting_.front();
     waiting_.pop_front();
     if (ended.insert(helper).second)
@@ -298,10 +237,7 @@ void MpiTeam::help(const Work& work) {
     wait_for(0, order);
     const auto [task, bytes] = receive_item(0, order);
     if (task == no_task) return;
-    if (task == hdf5_file)
-      help_with_hdf5(bytes);
-    else
-      send_item(task, work(bytes), 0, result);
+    send_item(task, work(bytes), 0, result);
   }
 }
 

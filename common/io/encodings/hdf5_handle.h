@@ -18,8 +18,6 @@ class Hdf5Handle {
   }
   hid_t id() const { return id_; }
   bool good() const { return id_ >= 0; }
-  /// The object, which is no longer closed on destruction.
-  hid_t release() { return std::exchange(id_, -1); }
 
  private:
   hid_t id_;
