@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <map>
 #include <optional>
@@ -72,6 +74,11 @@ class ByteWriter {
   void add(const Value& value) {
     if constexpr (has_archive<Value>) {
       archive(*this, value);
+    } else if constexpr (std::same_as<Value, bool>) {
+      std::uint8_t byte = 0;  // any other value than 0 and 1 would be undefined behaviour
+      copy(&byte, sizeof byte);
+      if (byte > 1) fail();
+      value = byte == 1;
     } else {
       static_assert(is_plain<Value>);
       add_raw(&value, sizeof value);
@@ -119,6 +126,8 @@ class ByteReader {
   bool at_end() const { return left_.empty(); }
 
  private:
+  /// Bytes that items of lists have nearly always: a damaged number of them must not ask for memory.
+  static constexpr std::size_t min_item = 8;
   template <class Value>
   static constexpr bool has_archive = requires(ByteReader& r, Value& v) {
     archive(r, v);
@@ -159,8 +168,10 @@ class ByteReader {
       values.resize(count(sizeof(Value)));
       copy(static_cast<void*>(values.data()), values.size() * sizeof(Value));
     } else {
+      std::size_t n = count(1);
       values.clear();
-      for (std::size_t n = count(1); n > 0; --n) take(values.emplace_back());
+      values.reserve(std::min(n, left_.size() / min_item));
+      for (; n > 0; --n) take(values.emplace_back());
     }
   }
   template <class First, class Second>

@@ -49,7 +49,8 @@ class ProcessTeam {
   virtual void report(int status, const std::string& message) = 0;
 };
 
-/// Thrown in a member other than the leader when the leader has all bricks: nothing is left to do.
+/// Thrown in a member other than the leader when the leader has all bricks: the mesh is the leader's, and at
+/// most its files are left to write.
 class HelperFinished : public std::exception {
  public:
   const char* what() const noexcept override { return "the bricks are finished"; }

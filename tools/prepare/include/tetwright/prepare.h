@@ -209,7 +209,7 @@ struct BrickOptions {
   /// job that was stopped goes on from them. Empty: in memory.
   std::string scratch;
   std::function<void()> when_kept;  ///< called before bricks are written to `scratch`; may be empty
-  /// Processes that make the bricks together; null: this one alone. Must outlive the call.
+  /// Processes that make bricks and write files together; null: this one alone. Must outlive the call.
   ProcessTeam* team = nullptr;
 };
 inline constexpr int min_brick_cells = 32, max_brick_cells = 1024, default_brick_cells = 128;
