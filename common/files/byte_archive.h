@@ -74,11 +74,6 @@ class ByteWriter {
   void add(const Value& value) {
     if constexpr (has_archive<Value>) {
       archive(*this, value);
-    } else if constexpr (std::same_as<Value, bool>) {
-      std::uint8_t byte = 0;  // any other value than 0 and 1 would be undefined behaviour
-      copy(&byte, sizeof byte);
-      if (byte > 1) fail();
-      value = byte == 1;
     } else {
       static_assert(is_plain<Value>);
       add_raw(&value, sizeof value);
@@ -153,6 +148,11 @@ class ByteReader {
   void take(Value& value) {
     if constexpr (has_archive<Value>) {
       archive(*this, value);
+    } else if constexpr (std::same_as<Value, bool>) {
+      std::uint8_t byte = 0;  // any other value than 0 and 1 would be undefined behaviour
+      copy(&byte, sizeof byte);
+      if (byte > 1) fail();
+      value = byte == 1;
     } else {
       static_assert(is_plain<Value>);
       copy(static_cast<void*>(&value), sizeof value);
