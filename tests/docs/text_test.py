@@ -16,7 +16,7 @@ MAX_README_LINES = 150
 MAX_PICTURE_BYTES = 200_000
 
 # Options of other programs that the text mentions.
-OTHERS = {"--bind-to", "--build", "--install", "--map-by", "--ml", "--no-build-isolation", "--no-deps", "--prefix", "--suite", "--system-site-packages",
+OTHERS = {"--bind-to", "--build", "--install", "--map-by", "--mca", "--ml", "--no-build-isolation", "--no-deps", "--prefix", "--suite", "--system-site-packages",
           "--target"}
 
 
