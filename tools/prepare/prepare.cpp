@@ -118,6 +118,12 @@ Prepared carry_out_within(Task task, std::vector<Input> inputs, const PrepareOpt
   return result;
 }
 
+Prepared unchanged_tets(std::vector<Input> inputs, PrepareRun& run) {
+  Prepared result;
+  result.mesh = read_tets_unchanged(std::move(inputs.front()), run);
+  return result;
+}
+
 }  // namespace
 
 Prepared carry_out(std::vector<Input> inputs, PrepareRun& run) {
@@ -129,11 +135,10 @@ Prepared carry_out(std::vector<Input> inputs, PrepareRun& run) {
   ValueInputs images = read_value_inputs(run);
   const bool of_scans = run.task == Task::prepare || run.task == Task::mesh;
   try {
-    result = run.task == Task::prepare ? mesh_from_scans(std::move(inputs), images, run)
-             : run.task == Task::mesh  ? dense_mesh_from_scans(std::move(inputs), images, run)
-             : run.task == Task::values
-                 ? Prepared{.mesh = read_tets_unchanged(std::move(inputs.front()), run)}
-                 : mesh_from_tets(std::move(inputs), images, run);
+    result = run.task == Task::prepare  ? mesh_from_scans(std::move(inputs), images, run)
+             : run.task == Task::mesh   ? dense_mesh_from_scans(std::move(inputs), images, run)
+             : run.task == Task::values ? unchanged_tets(std::move(inputs), run)
+                                        : mesh_from_tets(std::move(inputs), images, run);
   } catch (const OutOfTime&) {
     throw OutOfTime("out of time: after the " + short_number(run.options.limits.seconds.value_or(0)) +
                     " s of --time-limit there was no mesh yet (in stage '" + run.progress.stage() +
