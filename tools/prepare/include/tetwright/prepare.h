@@ -209,8 +209,7 @@ struct BrickOptions {
   /// job that was stopped goes on from them. Empty: in memory.
   std::string scratch;
   std::function<void()> when_kept;  ///< called before bricks are written to `scratch`; may be empty
-  /// Processes that make bricks and write files together; null: this one alone. Must outlive the call.
-  ProcessTeam* team = nullptr;
+  ProcessTeam* team = nullptr;      ///< processes that share the work, or null; must outlive the call
 };
 inline constexpr int min_brick_cells = 32, max_brick_cells = 1024, default_brick_cells = 128;
 inline constexpr int max_brick_rounds = 3;
@@ -394,10 +393,9 @@ struct BrickReport {
   std::size_t repeated = 0;       ///< times that a brick was made again with more cells around it
   std::size_t surfaces_kept = 0;  ///< bricks made again with their boundary as it is, since it met another's
   std::size_t resumed = 0;        ///< bricks of all rounds that were finished before
-  /// Bricks that other members of a team made, by round; empty without a team.
-  std::vector<std::size_t> by_helpers;
-  std::size_t coarse_tets = 0;  ///< tets of all coarsened bricks
-  double scratch_bytes = 0;     ///< of all bricks' files
+  std::vector<std::size_t> by_helpers;  ///< bricks made by others of a team, by round; empty without one
+  std::size_t coarse_tets = 0;          ///< tets of all coarsened bricks
+  double scratch_bytes = 0;             ///< of all bricks' files
 };
 
 /// Report of a run. Members that belong to steps which are not run stay empty.
