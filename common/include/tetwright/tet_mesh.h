@@ -25,6 +25,7 @@ inline constexpr Index no_index = std::numeric_limits<Index>::max();
 
 using Triangle = std::array<Index, 3>;
 using Tet = std::array<Index, 4>;
+using Wedge = std::array<Index, 6>;
 
 /// Integer that identifies a material: any value, returned unchanged. Outside has no tag.
 using MaterialTag = std::int32_t;
@@ -100,6 +101,11 @@ struct TetMesh {
   /// Further data of the file for points and tets, without the materials.
   std::vector<MeshField> point_fields = {};
   std::vector<MeshField> cell_fields = {};
+  /// Cohesive elements: wedges without volume between the two sides of parted interfaces (see
+  /// parted_interfaces.h). Corners 0, 1, 2 are those of a face of the first side, whose normal points to the
+  /// second side; corner k + 3 has the coordinates of corner k. Only meshes to be written, or just read, have
+  /// any.
+  std::vector<Wedge> wedges = {};
 };
 
 /// Edges of a tet in the order of its midside nodes in VTK, Abaqus, Nastran and FEBio. Gmsh swaps the last
