@@ -362,6 +362,15 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
      .message = "N faces of named patches between tets that were merged",
      .cause = "Merging points made these faces interior.",
      .remedy = "None needed, unless the crack between the tets was intended: then its points must differ."},
+    {.code = interfaces_joined,
+     .name = "interfaces-joined",
+     .severity = Severity::note,
+     .title = "parted interfaces joined",
+     .message = "FILE: the two sides of parted interfaces ('NAME'), N points (joined, and parted again in the "
+                "result)",
+     .cause = "The file has groups of faces NAME:A and NAME:B that coincide: Tetwright parted them.",
+     .remedy = "None needed: `check` looks at the joined mesh, where all its rules hold; `simplify` and "
+               "`improve` part it again, with its cohesive elements."},
     {.code = input_dropped,
      .name = "input-dropped",
      .severity = Severity::note,

@@ -5,6 +5,7 @@
 #include <array>
 #include <filesystem>
 #include <type_traits>
+#include <set>
 
 #include "common/files/file_names.h"
 #include "common/geometry/measurable.h"
@@ -118,7 +119,7 @@ const typename Formats::value_type& need_format(const Formats& formats, const st
 
 TetFormatInfo info_of(const TetFormat& format) {
   return {format.name,        format.extension, format.names,        format.surfaces,
-          format.patch_names, format.fields,    format.second_order, static_cast<bool>(format.part_files),
+          format.patch_names, format.fields,    format.second_order, format.wedges, static_cast<bool>(format.part_files),
           format.bins,        format.moduli};
 }
 
@@ -208,6 +209,11 @@ const Format& streamed(const Format& format, const std::string& name) {
 /// Checks the mesh by require_measurable(), and returns it.
 ReadTetMesh measurable(ReadTetMesh read, const std::string& name) {
   require_measurable(read.mesh, name);
+  if (!read.mesh.wedges.empty()) {
+    // The names of cohesive elements, which are written like materials.
+    const std::set<MaterialTag> used(read.mesh.materials.begin(), read.mesh.materials.end());
+    std::erase_if(read.mesh.material_names, [&](const auto& named) { return !used.contains(named.first); });
+  }
   return read;
 }
 

@@ -329,14 +329,25 @@ FaceCoordinates coordinates_of(const TetMesh& mesh, const Triangle& ids) {
 
 class Joiner {
  public:
+  /// \param mesh find() leaves it unchanged
   explicit Joiner(TetMesh& mesh) : mesh_(mesh), points_(mesh.points.size()) {}
 
-  JoinedInterfaces join() {
+  /// Finds the sides that coincide.
+  /// \return their faces, as indices into TetMesh::interfaces
+  std::vector<std::size_t> find() {
     collect_sides();
+    std::vector<std::size_t> found;
     for (const auto& [name, sides] : sides_)
       if (sides.size() == 2 && sides[0]->is_sheet == sides[1]->is_sheet &&
-          sides[0]->is_sheet == (sides[0]->material == sides[1]->material))
-        join_sides(name, *sides[0], *sides[1]);
+          sides[0]->is_sheet == (sides[0]->material == sides[1]->material) &&
+          join_sides(name, *sides[0], *sides[1]))
+        for (const Side* side : sides) found.insert(found.end(), side->faces.begin(), side->faces.end());
+    std::sort(found.begin(), found.end());
+    return found;
+  }
+
+  JoinedInterfaces join() {
+    (void)find();
     if (faces_.empty() && mesh_.wedges.empty()) return {};
     find_cohesive();
     merge_points();
@@ -383,16 +394,17 @@ class Joiner {
     }
   }
 
-  /// Joins the faces of two sides if they coincide.
-  void join_sides(const std::string& name, const Side& a, const Side& b) {
-    if (a.faces.size() != b.faces.size()) return;
+  /// Joins the faces of two sides.
+  /// \return false if they do not coincide
+  bool join_sides(const std::string& name, const Side& a, const Side& b) {
+    if (a.faces.size() != b.faces.size()) return false;
     std::map<FaceCoordinates, std::size_t> by_place;
     for (const std::size_t f : a.faces)
-      if (!by_place.emplace(place_of(f), f).second) return;
+      if (!by_place.emplace(place_of(f), f).second) return false;
     std::vector<std::pair<std::size_t, std::size_t>> pairs;
     for (const std::size_t f : b.faces) {
       const auto same = by_place.find(place_of(f));
-      if (same == by_place.end()) return;
+      if (same == by_place.end()) return false;
       pairs.emplace_back(same->second, f);
       by_place.erase(same);
     }
@@ -417,6 +429,7 @@ class Joiner {
       part.group = name;
     result_.parts.push_back(part);
     result_.names.push_back(name);
+    return true;
   }
 
   FaceCoordinates place_of(std::size_t face) const {
@@ -524,6 +537,19 @@ std::vector<PartedInterface> part_interfaces(TetMesh& mesh, MidsideNodes* midsid
 }
 
 JoinedInterfaces join_parted_interfaces(TetMesh& mesh) { return Joiner(mesh).join(); }
+
+std::vector<std::size_t> parted_faces(const TetMesh& mesh) {
+  return Joiner(const_cast<TetMesh&>(mesh)).find();  // NOLINT(cppcoreguidelines-pro-type-const-cast)
+}
+
+bool is_cohesive(const Wedge& wedge, std::span<const Vec3> points) {
+  bool apart = false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (points[wedge[k]] != points[wedge[k + 3]]) return false;
+    apart |= wedge[k] != wedge[k + 3];
+  }
+  return apart;
+}
 
 std::map<std::string, std::vector<std::size_t>> wedges_by_interface(const TetMesh& mesh) {
   std::map<std::string, std::vector<std::size_t>> result;

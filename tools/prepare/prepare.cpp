@@ -12,6 +12,7 @@
 #include "tetwright/prepare_steps.h"
 #include "tetwright/simplify.h"
 #include "tools/prepare/input_changes.h"
+#include "tools/prepare/interface_parting.h"
 #include "tools/prepare/value_input.h"
 #include "tools/prepare/value_rules.h"
 
@@ -87,9 +88,11 @@ Prepared dense_mesh_from_scans(std::vector<Input> inputs, const ValueInputs& ima
   return result;
 }
 
-Prepared mesh_from_tets(std::vector<Input> inputs, const ValueInputs& images, PrepareRun& run) {
+Prepared mesh_from_tets(std::vector<Input> inputs, const ValueInputs& images, PrepareRun& run,
+                        std::vector<InterfaceToPart>& joined) {
   Prepared result;
   TetInput input = read_tets(std::move(inputs.front()), run);
+  joined = std::move(input.joined);
   Box3 box;
   for (const Vec3& p : input.mesh.points) box.add(p);
   check_images_meet(images, box, {}, run);
@@ -133,12 +136,13 @@ Prepared carry_out(std::vector<Input> inputs, PrepareRun& run) {
   for (const Input& input : inputs) run.report.inputs.push_back(input.name);
   Prepared result;
   ValueInputs images = read_value_inputs(run);
+  std::vector<InterfaceToPart> joined;
   const bool of_scans = run.task == Task::prepare || run.task == Task::mesh;
   try {
     result = run.task == Task::prepare  ? mesh_from_scans(std::move(inputs), images, run)
              : run.task == Task::mesh   ? dense_mesh_from_scans(std::move(inputs), images, run)
              : run.task == Task::values ? unchanged_tets(std::move(inputs), run)
-                                        : mesh_from_tets(std::move(inputs), images, run);
+                                        : mesh_from_tets(std::move(inputs), images, run, joined);
   } catch (const OutOfTime&) {
     throw OutOfTime("out of time: after the " + short_number(run.options.limits.seconds.value_or(0)) +
                     " s of --time-limit there was no mesh yet (in stage '" + run.progress.stage() +
@@ -155,6 +159,7 @@ Prepared carry_out(std::vector<Input> inputs, PrepareRun& run) {
   if (run.caps)
     run.report.caps = run.caps->name(result.mesh, run.task == Task::mesh ? CapNaming::sharp : CapNaming::all);
   take_values(std::move(images), result, run);
+  if (run.task != Task::values) part_result(result, joined, run);
   result.midside = std::move(run.midside);
   result.scratch = std::move(run.scratch);
   run.progress.throw_if_stopped();
@@ -236,6 +241,7 @@ void check_options(Task task, const PrepareOptions& options) {
     throw UsageError("--outside-probability " + short_number(*p) +
                      " is no probability; give a number from 0 to 1 (for other values --iso)");
   check_value_options(task, options.values);
+  check_parting(options);
   if (options.bricks.use == BrickOptions::Use::always) check_bricks(task, options);
   const BrickOptions& bricks = options.bricks;
   if (bricks.use == BrickOptions::Use::never && (!bricks.scratch.empty() || bricks.rounds > 0))

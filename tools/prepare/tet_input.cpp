@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tetwright/prepare_steps.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "tetwright/error.h"
@@ -49,7 +50,32 @@ void repair(TetMesh& mesh, const std::string& file, PrepareReport& report) {
   if (mesh.tets.empty()) throw InputError(file, 0, "all its tets have a repeated vertex; no tets remain");
 }
 
+/// The wedges of cohesive elements have six nodes, whatever the order of the tets.
+void require_first_order_wedges(const std::vector<InterfaceToPart>& joined, const PrepareOptions& options,
+                                const std::string& file) {
+  if (options.order == 2 &&
+      std::any_of(joined.begin(), joined.end(), [](const InterfaceToPart& part) { return part.cohesive; }))
+    throw UsageError(file + " has cohesive elements, which do not fit tets of second order; leave out --order 2");
+}
+
 }  // namespace
+
+std::vector<InterfaceToPart> join_read_interfaces(ReadTetMesh& read, const std::string& file,
+                                                  PrepareReport& report, bool with_note) {
+  const JoinedInterfaces joined = join_parted_interfaces(read.mesh);
+  if (joined.other_wedges > 0)
+    read.dropped.push_back(
+        {"cohesive elements between faces whose groups are not the sides of a parted interface",
+         joined.other_wedges});
+  if (!joined.parts.empty() && with_note)
+    report.diagnostics.push_back(
+        {.code = DiagnosticCode::interfaces_joined,
+         .file = file,
+         .what = "points on the two sides of parted interfaces (" + quoted_list(joined.names) + ")",
+         .count = joined.points,
+         .done = "joined for the work"});
+  return joined.parts;
+}
 
 TetMesh read_tets_unchanged(Input from, PrepareRun& run) {
   const Stopwatch watch;
@@ -78,8 +104,10 @@ TetInput read_tets(Input from, PrepareRun& run) {
   run.report.material_field = read.material_field;
   run.report.input_points = read.mesh.points.size();
   run.progress.throw_if_stopped();
+  std::vector<InterfaceToPart> joined = join_read_interfaces(read, file, run.report);
+  require_first_order_wedges(joined, run.options, file);
   report_dropped(read.dropped, file, run.report);
-  TetInput input{std::move(read.mesh), {}};
+  TetInput input{std::move(read.mesh), {}, std::move(joined)};
   repair(input.mesh, file, run.report);
   run.progress.throw_if_stopped();
   if (!input.mesh.point_fields.empty() || !input.mesh.cell_fields.empty()) {

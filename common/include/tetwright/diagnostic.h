@@ -40,12 +40,14 @@ enum class DiagnosticCode : std::uint8_t {
   labels_changed,
   time_limit_reached,
   cells_enlarged,
+  interface_not_found,
   notes_not_allowed,
   // The result.
   angles_below_bound,
   tets_still_below,
   volume_changed,
   parts_touch,
+  faces_not_parted,
   gap_closed,
   wall_left_out,
   crease_patches_dropped,
@@ -108,6 +110,7 @@ enum class DiagnosticCode : std::uint8_t {
   tets_turned,
   tets_inverted,
   patch_faces_lost,
+  interfaces_joined,
   // Files.
   input_dropped,
   input_restored,

@@ -76,6 +76,16 @@ struct JoinedInterfaces {
 /// \pre indices in range; mesh.interfaces are faces of tets
 JoinedInterfaces join_parted_interfaces(TetMesh& mesh);
 
+/// The faces of both sides of all parted interfaces that join_parted_interfaces() would find, as indices into
+/// TetMesh::interfaces, ascending.
+std::vector<std::size_t> parted_faces(const TetMesh& mesh);
+
+/// Whether the corners k and k + 3 of a wedge have equal coordinates, but are not the same points everywhere:
+/// a cohesive element.
+///
+/// \pre indices in range
+bool is_cohesive(const Wedge& wedge, std::span<const Vec3> points);
+
 /// The wedges of each parted interface (indices into TetMesh::wedges, ascending), by its name.
 ///
 /// \pre the mesh is a result of part_interfaces(), or a file of it

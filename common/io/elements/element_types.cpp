@@ -78,7 +78,7 @@ constexpr std::array types = std::to_array<ElementType>({
     {"hexahedra of higher order", 3, 0, 67, none},
     {"hexahedra of higher order", 3, 0, 72, none},
     {"hexahedra of higher order", 3, 0, 79, none},
-    {"prisms", 3, 6, 13, 6},
+    element::wedge,
     {"quadratic prisms", 3, 12, 31, none},
     {"quadratic prisms", 3, 15, 26, 18},
     {"quadratic prisms", 3, 18, 32, 13},

@@ -24,6 +24,7 @@ inline constexpr ElementType quadratic_triangle{"quadratic triangles", 2, 6, 22,
 inline constexpr ElementType quad{"quads", 2, 4, 9, 3};
 inline constexpr ElementType tet{"tets", 3, 4, 10, 4};
 inline constexpr ElementType quadratic_tet{"quadratic tets", 3, 10, 24, 11};
+inline constexpr ElementType wedge{"prisms", 3, 6, 13, 6};
 }  // namespace element
 
 /// Type with this number in VTK files, legacy and XML; null for unknown numbers.

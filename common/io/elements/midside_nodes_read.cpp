@@ -19,6 +19,7 @@ void MidsideNodesRead::remove_from(ReadTetMesh& read, std::vector<Triangle>& tri
   };
   for (const Tet& tet : mesh.tets) keep(tet);
   for (const Triangle& t : triangles) keep(t);
+  for (const Wedge& wedge : mesh.wedges) keep(wedge);
 
   std::vector<Index> new_index(before, no_index);
   Index next = 0;
@@ -41,6 +42,7 @@ void MidsideNodesRead::remove_from(ReadTetMesh& read, std::vector<Triangle>& tri
   };
   for (Tet& tet : mesh.tets) renumber(tet);
   for (Triangle& t : triangles) renumber(t);
+  for (Wedge& wedge : mesh.wedges) renumber(wedge);
   if (before > next)
     read.dropped.push_back({"midside nodes; tets of ten nodes are reduced to their corners", before - next});
 }

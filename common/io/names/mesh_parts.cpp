@@ -14,6 +14,7 @@
 #include "common/unique_names.h"
 #include "tetwright/error.h"
 #include "tetwright/mesh_quality.h"
+#include "tetwright/parted_interfaces.h"
 
 namespace tetwright {
 
@@ -120,6 +121,34 @@ std::vector<BinDivision> parts_of_bins(std::span<const TetBins> divisions,
   for (std::size_t d = 0; d < divisions.size(); ++d)
     if (d != leading) add(divisions[d]);
   return result;
+}
+
+std::vector<CohesivePart> cohesive_parts(const TetMesh& mesh, const std::set<std::string>& names,
+                                         const std::set<std::int64_t>& numbers, const NameRules& rules) {
+  std::vector<CohesivePart> parts;
+  if (mesh.wedges.empty()) return parts;
+  UniqueNames unique(rules.form, rules.ignore_case);
+  for (const std::string& name : names) (void)unique.add(name);
+  std::int64_t number = numbers.empty() ? 0 : std::max<std::int64_t>(0, *numbers.rbegin());
+  if (number > std::numeric_limits<MaterialTag>::max() - std::ssize(mesh.wedges)) number = 0;
+  for (auto& [name, wedges] : wedges_by_interface(mesh)) {
+    do ++number;
+    while (numbers.contains(number));
+    parts.push_back({number, unique.add(name), std::move(wedges)});
+  }
+  return parts;
+}
+
+std::vector<CohesivePart> cohesive_parts(const TetMesh& mesh,
+                                         const std::vector<MeshParts::Material>& materials,
+                                         const NameRules& rules) {
+  std::set<std::string> names;
+  std::set<std::int64_t> numbers;
+  for (const MeshParts::Material& m : materials) {
+    names.insert(m.name);
+    numbers.insert(m.number);
+  }
+  return cohesive_parts(mesh, names, numbers, rules);
 }
 
 std::string comment_on_bin(const ValueBin& bin, const std::string& field) {

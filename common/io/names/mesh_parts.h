@@ -82,6 +82,24 @@ std::vector<BinDivision> parts_of_bins(std::span<const TetBins> divisions,
                                        const std::vector<MeshParts::Material>& materials,
                                        const NameRules& rules);
 
+/// The cohesive elements of a parted interface, which are written like a material.
+struct CohesivePart {
+  std::int64_t number;              ///< in the format, none of a material or bin
+  std::string name;                 ///< unique, also among materials and bins
+  std::vector<std::size_t> wedges;  ///< indices into TetMesh::wedges, ascending
+};
+
+/// \param names, numbers taken by others in the same format
+std::vector<CohesivePart> cohesive_parts(const TetMesh& mesh, const std::set<std::string>& names,
+                                         const std::set<std::int64_t>& numbers, const NameRules& rules);
+/// The same, where only the materials have taken names and numbers.
+std::vector<CohesivePart> cohesive_parts(const TetMesh& mesh,
+                                         const std::vector<MeshParts::Material>& materials,
+                                         const NameRules& rules);
+
+/// VTK's and XDMF's order of a wedge's corners: the normal of the first three points away from the others.
+inline constexpr std::array<std::size_t, 6> vtk_wedge_order{0, 2, 1, 3, 5, 4};
+
 /// Mean, bounds and number of tets of a bin, for a comment.
 std::string comment_on_bin(const ValueBin& bin, const std::string& field);
 

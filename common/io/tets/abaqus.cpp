@@ -2,7 +2,9 @@
 #include "common/io/tets/abaqus.h"
 
 #include <array>
+#include <set>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "common/io/names/mesh_parts.h"
@@ -39,6 +41,28 @@ void write_elements(TextWriter& out, const MeshToWrite& written, const MeshParts
   }
 }
 
+/// Writes cohesive elements, whose first three nodes are on the first side.
+void write_cohesive(TextWriter& out, const TetMesh& mesh, const std::vector<CohesivePart>& parts) {
+  std::uint64_t number = mesh.tets.size();
+  for (const CohesivePart& part : parts) {
+    out << "*ELEMENT, TYPE=COH3D6, ELSET=" << part.name << '\n';
+    for (const std::size_t w : part.wedges) {
+      out << ++number;
+      for (const Index node : mesh.wedges[w]) out << ", " << std::uint64_t{node} + 1;
+      out << '\n';
+    }
+  }
+}
+
+/// Names that no other set of elements may have.
+std::set<std::string> names_of_sets(const MeshParts& parts, const MeshToWrite& written) {
+  std::set<std::string> names;
+  for (const MeshParts::Material& m : parts.materials) names.insert(m.name);
+  for (const BinDivision& division : parts_of_bins(written.bins, parts.materials, abaqus_names()))
+    for (const BinPart& bin : division.parts) names.insert(bin.name);
+  return names;
+}
+
 /// Writes the bins as element sets, and their moduli as sections.
 void write_bins(TextWriter& out, std::span<const TetBins> bins,
                 const std::vector<MeshParts::Material>& materials) {
@@ -73,6 +97,15 @@ void write_abaqus(const MeshToWrite& written, const ByteSink& sink) {
   out << "** Written by tetwright, to be taken in by *INCLUDE\n";
   for (const MeshParts::Material& m : parts.materials)
     out << abaqus_material_comment << m.tag << ": " << m.name << '\n';
+  const auto write_name = [&](const char* comment, const std::string& written_name, const std::string& name) {
+    if (!name.empty() && name != written_name)
+      out << comment << written_name << ": " << printable_name(name) << '\n';
+  };
+  for (const MeshParts::Material& m : parts.materials)
+    if (const auto known = mesh.material_names.find(m.tag); known != mesh.material_names.end())
+      write_name(abaqus_material_name_comment, m.name, known->second);
+  for (const MeshParts::Surface& s : parts.surfaces)
+    write_name(abaqus_surface_name_comment, s.name, s.group.name);
   out << "*NODE\n";
   for (std::size_t i = 0; i < written.nodes(); ++i) {
     out << i + 1;
@@ -80,6 +113,7 @@ void write_abaqus(const MeshToWrite& written, const ByteSink& sink) {
     out << '\n';
   }
   for (const MeshParts::Material& m : parts.materials) write_elements(out, written, m);
+  write_cohesive(out, mesh, cohesive_parts(mesh, names_of_sets(parts, written), {}, abaqus_names()));
   write_bins(out, written.bins, parts.materials);
   const std::vector<TetFace> faces = faces_of_tets(mesh);
   for (const MeshParts::Surface& s : parts.surfaces) {

@@ -11,6 +11,10 @@ namespace tetwright {
 
 /// Start of a comment of write_abaqus() that gives the tag of a material; "TAG: NAME" follows.
 inline constexpr const char* abaqus_material_comment = "** material ";
+/// Starts of comments that give the name of a material or a surface in the mesh, if the format cannot hold it;
+/// "NAME: NAME IN THE MESH" follows.
+inline constexpr const char* abaqus_material_name_comment = "** name of material ";
+inline constexpr const char* abaqus_surface_name_comment = "** name of surface ";
 
 /// Constraints on names in write_abaqus().
 NameRules abaqus_names();
@@ -19,7 +23,8 @@ NameRules abaqus_names();
 /// (C3D4, C3D10 and their variants, also DC3D4 and similar); tets of 10 nodes are reduced to their corners.
 /// Materials are the element sets of *SOLID SECTION, or those named by *ELEMENT lines if there is no section.
 /// They are numbered from 1 in order of appearance, unless comments of write_abaqus() give their tags.
-/// Surfaces of element faces become groups of faces, see take_triangles(). Other volume elements, several
+/// Surfaces of element faces become groups of faces, see take_triangles(). Cohesive elements (COH3D6) whose
+/// nodes coincide in pairs become TetMesh::wedges. Other volume elements, several
 /// parts or instances, and *INCLUDE are rejected. Other elements, sets and surfaces are counted in
 /// ReadTetMesh::dropped; keywords unrelated to the mesh are skipped.
 ///
@@ -32,7 +37,8 @@ ReadTetMesh read_abaqus(std::string_view bytes, const std::string& name,
 /// Writes an input file of Abaqus or CalculiX for *INCLUDE, without steps and material properties. Nodes and
 /// elements are numbered from 1 without gaps, in the order of the mesh. Each material is an element set of
 /// C3D4 or C3D10 elements. Each surface of a mesh with interfaces is a *SURFACE of element faces (on the side
-/// of the smaller tag) and a node set of the same name. Names are plain_name()s. The format has no fields.
+/// of the smaller tag) and a node set of the same name. Cohesive elements are an element set of COH3D6 for each
+/// parted interface, numbered after the tets. Names are plain_name()s. The format has no fields.
 ///
 /// Both programs read 20 characters of a number: a coordinate that needs more is rounded to what fits, 14
 /// digits in the worst case.

@@ -17,6 +17,7 @@
 #include "common/trimmed.h"
 #include "tetwright/error.h"
 #include "tetwright/io.h"
+#include "tetwright/parted_interfaces.h"
 
 namespace tetwright {
 
@@ -42,10 +43,11 @@ struct Keyword {
 };
 
 /// Kind of an element, as determined by the beginning of its type.
-enum class Kind { tet, quadratic_tet, volume, flat };
+enum class Kind { tet, quadratic_tet, cohesive, volume, flat };
 
 Kind kind_of(const std::string& type) {
   // C3D is a continuum element; with a prefix, AC3D is an acoustic and DC3D a thermal one.
+  if (type == "COH3D6") return Kind::cohesive;
   const std::size_t at = type.find("C3D");
   if (at > 1)  // or npos
     return type.starts_with("SC") || type.starts_with("CSS") ? Kind::volume : Kind::flat;
@@ -130,6 +132,8 @@ class AbaqusReader {
       line_number_ = in_.line();
       const std::string_view text = trimmed(in_.rest_of_line());
       if (text.starts_with(abaqus_material_comment)) read_comment(text);
+      read_name_comment(text, abaqus_material_name_comment, material_names_);
+      read_name_comment(text, abaqus_surface_name_comment, surface_names_);
       if (text.empty() || text.starts_with("**")) continue;
       line_ = text;
       return true;
@@ -156,6 +160,15 @@ class AbaqusReader {
     std::int64_t tag = 0;
     if (colon == std::string_view::npos || !parse_number(text.substr(0, colon), tag)) return;
     tags_[in_capitals(text.substr(colon + 2))] = checked_material(tag, in_.name(), line_number_);
+  }
+
+  /// Reads a comment that gives a name in the mesh.
+  static void read_name_comment(std::string_view text, std::string_view comment,
+                                std::map<std::string, std::string>& names) {
+    if (!text.starts_with(comment)) return;
+    text.remove_prefix(comment.size());
+    if (const std::size_t colon = text.find(": "); colon != std::string_view::npos)
+      names[in_capitals(text.substr(0, colon))] = text.substr(colon + 2);
   }
 
   /// Splits a line at commas.
@@ -216,8 +229,8 @@ class AbaqusReader {
     if (!type) fail(keyword.line, "*ELEMENT without TYPE=");
     const Kind kind = kind_of(in_capitals(*type));
     const std::string* set = keyword.find("ELSET");
-    const std::size_t nodes = kind == Kind::tet ? 4 : 10;
-    if (kind == Kind::tet || kind == Kind::quadratic_tet) sort_nodes();
+    const std::size_t nodes = kind == Kind::tet ? 4 : kind == Kind::cohesive ? 6 : 10;
+    if (kind == Kind::tet || kind == Kind::quadratic_tet || kind == Kind::cohesive) sort_nodes();
     std::vector<std::int64_t> numbers;  // of an element; all of its lines but the last end with a comma
     std::size_t count = 0;
     while (next_data()) {
@@ -234,6 +247,11 @@ class AbaqusReader {
         fail(line_number_, "element " + std::to_string(numbers[0]) + " of type " + *type + " has " +
                                std::to_string(numbers.size() - 1) + " nodes instead of " +
                                std::to_string(nodes));
+      if (kind == Kind::cohesive) {
+        add_wedge(numbers, *type, keyword.line);
+        numbers.clear();
+        continue;
+      }
       add_tet(numbers, set ? in_capitals(*set) : "");
       if (set) set_names_.emplace(in_capitals(*set), *set);
       numbers.clear();
@@ -272,6 +290,17 @@ class AbaqusReader {
     std::array<Index, 6> midside{};
     for (std::size_t k = 0; k < 6; ++k) midside[k] = node(numbers[0], numbers[k + 5]);
     midside_.add_tet(midside);
+  }
+
+  void add_wedge(const std::vector<std::int64_t>& numbers, const std::string& type, std::size_t line) {
+    Wedge wedge;
+    for (std::size_t k = 0; k < 6; ++k) wedge[k] = node(numbers[0], numbers[k + 1]);
+    if (is_cohesive(wedge, result_.mesh.points)) {
+      result_.mesh.wedges.push_back(wedge);
+      return;
+    }
+    if (volumes_.empty()) volumes_line_ = line;
+    volumes_.add("elements of type " + type + " whose nodes do not coincide in pairs", 1);
   }
 
   std::uint32_t index_of_set(const std::string& set) {
@@ -369,6 +398,12 @@ class AbaqusReader {
     for (const std::string& other : set->second.sets) tets_of(other, line, open, tets);
   }
 
+  /// Name of a material in the mesh that was written.
+  const std::string& own_name(const std::string& in_upper_case, const std::string& written) const {
+    const auto own = material_names_.find(in_upper_case);
+    return own == material_names_.end() ? written : own->second;
+  }
+
   void set_materials() {
     if (const std::optional<std::int64_t> twice = elements_.sort())
       in_.fail("element " + std::to_string(*twice) + " appears twice");
@@ -405,7 +440,7 @@ class AbaqusReader {
         of_tets[t] = tag;
       }
       if (const auto text = set_names_.find(name); text != set_names_.end() && !text->second.empty())
-        mesh.material_names[tag] = text->second;
+        mesh.material_names[tag] = own_name(name, text->second);
     }
     const MaterialTag rest = free_tag();
     for (const std::int64_t tag : of_tets)
@@ -419,7 +454,8 @@ class AbaqusReader {
     triangles_.name_form = [](const std::string& name) { return plain_name(name); };
     std::int64_t number = 0;
     for (const auto& [name, sides] : surfaces_) {
-      triangles_.names[++number] = name;
+      const auto own = surface_names_.find(in_capitals(name));
+      triangles_.names[++number] = own == surface_names_.end() ? name : own->second;
       for (const Side& side : sides) {
         std::vector<Index> tets;
         if (std::int64_t element = 0; parse_number(side.what, element)) {
@@ -470,6 +506,7 @@ class AbaqusReader {
   std::vector<std::string> block_names_;             ///< in upper case; empty for *ELEMENT without ELSET
   std::map<std::string, Set> sets_;                  ///< by name in upper case
   std::map<std::string, std::string> set_names_;     ///< as spelled in the file, by name in upper case
+  std::map<std::string, std::string> material_names_, surface_names_;  ///< from comments, by name in upper case
   std::map<std::string, MaterialTag> tags_;          ///< from comments, by name in upper case
   std::vector<std::pair<std::string, std::size_t>> sections_;  ///< sets in upper case, with lines
   std::map<std::string, std::vector<Side>> surfaces_;

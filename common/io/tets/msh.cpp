@@ -61,6 +61,8 @@ std::string write_msh(const MeshToWrite& written) {
     }
   }
   const std::vector<MaterialTag>& physical = written.bins.empty() ? mesh.materials : of_tets;
+  const std::vector<CohesivePart> cohesive = msh_cohesive(mesh, physical, names);
+  for (const CohesivePart& part : cohesive) names[static_cast<MaterialTag>(part.number)] = part.name;
   if (!names.empty() || !groups.face_names.empty()) {
     out += "$PhysicalNames\n";
     append_number(out, groups.face_names.size() + names.size());
@@ -81,7 +83,7 @@ std::string write_msh(const MeshToWrite& written) {
   // Tets come first: their numbers are then the same with and without triangles, and simple readers use only
   // the first block of elements.
   out += "$EndNodes\n$Elements\n";
-  append_number(out, mesh.tets.size() + mesh.interfaces.size());
+  append_number(out, mesh.tets.size() + mesh.interfaces.size() + mesh.wedges.size());
   out += '\n';
   // The second tag is the number of the geometrical entity and must be positive: one for each group.
   std::vector<MaterialTag> tags = physical;
@@ -104,6 +106,13 @@ std::string write_msh(const MeshToWrite& written) {
     if (midside) append_nodes(out, midside->of_faces[i], mesh.points.size());
     out += '\n';
   }
+  std::size_t number = mesh.tets.size() + mesh.interfaces.size();
+  for (std::size_t i = 0; i < cohesive.size(); ++i)
+    for (const std::size_t w : cohesive[i].wedges) {
+      begin_element(out, ++number, element::wedge.msh, cohesive[i].number, std::ssize(tags) + static_cast<std::ptrdiff_t>(i) + 1);
+      append_nodes(out, mesh.wedges[w]);
+      out += '\n';
+    }
   out += "$EndElements\n";
   append_msh_data(out, "NodeData", written.node_fields(), written.nodes());
   append_msh_data(out, "ElementData", fields_of_elements(mesh), mesh.tets.size() + mesh.interfaces.size());

@@ -41,16 +41,16 @@ class Msh4Writer {
         binary_(binary),
         physical_(msh4_volumes(mesh_)) {
     bins_ = msh_bins(mesh_, written.bins);
+    name_cohesive();
     collect_entities();
     classify_nodes();
   }
 
   void write() {
     numbers_.begin_file();
-    std::map<std::int64_t, std::string> names_of_bins;
-    for (const BinDivision& division : bins_)
-      for (const BinPart& bin : division.parts) names_of_bins[bin.number] = bin.name;
-    write_msh4_groups(out_, groups_, physical_, names_of_bins);
+    std::map<std::int64_t, std::string> further = names_of_bins();
+    for (const CohesivePart& part : cohesive_) further[part.number] = part.name;
+    write_msh4_groups(out_, groups_, physical_, further);
     write_entities();
     write_nodes();
     write_elements();
@@ -63,6 +63,22 @@ class Msh4Writer {
   }
 
  private:
+  std::map<std::int64_t, std::string> names_of_bins() const {
+    std::map<std::int64_t, std::string> names;
+    for (const BinDivision& division : bins_)
+      for (const BinPart& bin : division.parts) names[bin.number] = bin.name;
+    return names;
+  }
+
+  void name_cohesive() {
+    std::map<std::int64_t, std::string> names = names_of_bins();
+    std::set<std::int64_t> numbers;
+    for (const auto& [tag, number] : physical_) numbers.insert(number);
+    for (const auto& [tag, name] : groups_.material_names)
+      if (const auto number = physical_.find(tag); number != physical_.end()) names[number->second] = name;
+    cohesive_ = msh_cohesive(mesh_, numbers, names);
+  }
+
   void collect_entities() {
     std::map<std::int64_t, Entity> surfaces, volumes;
     for (std::size_t i = 0; i < mesh_.interfaces.size(); ++i) {
@@ -84,6 +100,26 @@ class Msh4Writer {
     for (auto* entities : {&surfaces, &volumes})
       for (auto& [number, entity] : *entities) entities_.push_back(std::move(entity));
     surfaces_ = surfaces.size();
+    volumes_ = entities_.size() - surfaces_;
+    std::int64_t last = volumes.empty() ? 0 : volumes.rbegin()->first;
+    for (const CohesivePart& part : cohesive_) {
+      last = std::max(last + 1, part.number);
+      entities_.push_back({volume_dimension, last, {part.number}, part.wedges, {}, {}});
+    }
+  }
+
+  /// The kinds of elements, in the order in which they are numbered.
+  enum class Kind { tets, triangles, wedges };
+  Kind kind_of(const Entity& entity) const {
+    if (entity.dimension == surface_dimension) return Kind::triangles;
+    return &entity >= entities_.data() + surfaces_ + volumes_ ? Kind::wedges : Kind::tets;
+  }
+  /// Number of an element, less one.
+  std::size_t number_of(Kind kind, std::size_t element) const {
+    return (kind == Kind::tets        ? 0
+            : kind == Kind::triangles ? mesh_.tets.size()
+                                      : mesh_.tets.size() + mesh_.interfaces.size()) +
+           element;
   }
 
   /// Adds a volume for each combination of bins that a tet is in, which is in the groups of all of them.
@@ -130,8 +166,9 @@ class Msh4Writer {
       std::sort(entity.nodes.begin(), entity.nodes.end());
     }
     // Nodes without a tet.
+    Entity& rest = entities_[surfaces_ + volumes_ - 1];
     for (std::size_t node = 0; node < done.size(); ++node)
-      if (!done[node]) entities_.back().nodes.push_back(static_cast<Index>(node));
+      if (!done[node]) rest.nodes.push_back(static_cast<Index>(node));
   }
 
   /// Nodes of an element in Gmsh's order.
@@ -139,7 +176,10 @@ class Msh4Writer {
     std::vector<Index> nodes;
     const auto add = [&](const auto& corners) { nodes.insert(nodes.end(), corners.begin(), corners.end()); };
     const auto add_midside = [&](Index m) { nodes.push_back(static_cast<Index>(mesh_.points.size()) + m); };
-    if (entity.dimension == surface_dimension) {
+    const Kind kind = kind_of(entity);
+    if (kind == Kind::wedges) {
+      add(mesh_.wedges[element]);
+    } else if (kind == Kind::triangles) {
       add(mesh_.interfaces[element].ids);
       if (written_.midside)
         for (const Index m : written_.midside->of_faces[element]) add_midside(m);
@@ -188,21 +228,22 @@ class Msh4Writer {
     numbers_.integer(entity.dimension).integer(entity.number).integer(kind).size(items).end_line();
   }
 
-  /// Writes the elements. Tets are numbered from 1 in the order of the mesh, followed by the triangles, since
-  /// fields refer to tets by these numbers.
+  /// Writes the elements. Tets are numbered from 1 in the order of the mesh, followed by the triangles and the
+  /// wedges, since fields refer to tets by these numbers.
   void write_elements() {
     out_ << "$Elements\n";
-    const std::size_t all = mesh_.tets.size() + mesh_.interfaces.size();
+    const std::size_t all = mesh_.tets.size() + mesh_.interfaces.size() + mesh_.wedges.size();
     numbers_.size(entities_.size()).size(all).size(1).size(all).end_line();
     for (const Entity& entity : entities_) {
-      const bool surface = entity.dimension == surface_dimension;
+      const Kind kind = kind_of(entity);
+      const bool quadratic = written_.midside != nullptr;
       begin_block(entity,
-                  surface ? written_.midside ? element::quadratic_triangle.msh : element::triangle.msh
-                  : written_.midside ? element::quadratic_tet.msh
-                                     : element::tet.msh,
+                  kind == Kind::wedges      ? element::wedge.msh
+                  : kind == Kind::triangles ? (quadratic ? element::quadratic_triangle : element::triangle).msh
+                                            : (quadratic ? element::quadratic_tet : element::tet).msh,
                   entity.elements.size());
       for (const std::size_t e : entity.elements) {
-        numbers_.size((surface ? mesh_.tets.size() : 0) + e + 1);
+        numbers_.size(number_of(kind, e) + 1);
         for (const Index node : nodes_of(entity, e)) numbers_.size(node + std::size_t{1});
         numbers_.end_line();
       }
@@ -219,9 +260,10 @@ class Msh4Writer {
   }
   std::vector<std::size_t> order_of_elements() const {
     std::vector<std::size_t> order;
+    // Fields have no values of wedges.
     for (const Entity& entity : entities_)
-      for (const std::size_t e : entity.elements)
-        order.push_back((entity.dimension == surface_dimension ? mesh_.tets.size() : 0) + e);
+      if (const Kind kind = kind_of(entity); kind != Kind::wedges)
+        for (const std::size_t e : entity.elements) order.push_back(number_of(kind, e));
     return order;
   }
 
@@ -233,8 +275,9 @@ class Msh4Writer {
   bool binary_;
   std::map<std::int64_t, std::int64_t> physical_;  ///< physical groups by material
   std::vector<BinDivision> bins_;                  ///< their combinations are volumes
-  std::vector<Entity> entities_;                   ///< surfaces, then volumes
-  std::size_t surfaces_ = 0;
+  std::vector<CohesivePart> cohesive_;             ///< likewise
+  std::vector<Entity> entities_;                   ///< surfaces, then volumes, the cohesive ones last
+  std::size_t surfaces_ = 0, volumes_ = 0;         ///< numbers of them, without the cohesive ones
 };
 
 }  // namespace

@@ -98,6 +98,8 @@ class MshReader {
   bool read_face(std::int64_t type, std::int64_t element, std::int64_t group);
   /// Reads a tet of four nodes, or of ten nodes with the corners first.
   void read_tet(std::int64_t type, std::int64_t element);
+  /// Reads a wedge: a cohesive element, or a volume that is refused.
+  void read_wedge(std::int64_t element);
   static bool is_tet(std::int64_t type) {
     return type == element::tet.msh || type == element::quadratic_tet.msh;
   }

@@ -2,6 +2,7 @@
 #include "common/io/names/mesh_fields.h"
 #include "common/io/tets/msh_reader.h"
 #include "tetwright/error.h"
+#include "tetwright/parted_interfaces.h"
 
 namespace tetwright {
 
@@ -172,6 +173,15 @@ void MshReader::read_tet(std::int64_t type, std::int64_t element) {
   if (keep_numbers_) tet_numbers_.push_back(element);
 }
 
+void MshReader::read_wedge(std::int64_t element) {
+  const std::size_t line = in_.line();
+  const Wedge wedge = read_ids<Wedge>(element, true, "node of a prism");
+  if (is_cohesive(wedge, result_.mesh.points))
+    result_.mesh.wedges.push_back(wedge);
+  else
+    others_.add_volume(element::wedge.msh, element, line);
+}
+
 void MshReader::skip_nodes(std::int64_t type) {
   if (!numbers_.binary()) {
     in_.skip_line();
@@ -216,6 +226,8 @@ void MshReader::read_elements_2() {
       partitioned_ += tags > 2;
       add_groups(physical, geometrical);
       read_tet(type, element);
+    } else if (type == element::wedge.msh) {
+      read_wedge(element);
     } else if (OtherMshElements::is_volume(type)) {
       others_.add_volume(type, element, in_.line());
       skip_nodes(type);
@@ -259,6 +271,8 @@ void MshReader::read_elements_4() {
       if (is_tet(type)) {
         add_groups(group, entity);
         read_tet(type, element);
+      } else if (type == element::wedge.msh) {
+        read_wedge(element);
       } else if (dimension == 3 || OtherMshElements::is_volume(type)) {
         others_.add_volume(type, element, in_.line());
         skip_nodes(type);

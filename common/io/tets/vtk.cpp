@@ -8,11 +8,13 @@
 #include "common/io/elements/vtk_cells.h"
 #include "common/io/encodings/vtk_numbers.h"
 #include "common/io/names/mesh_fields.h"
+#include "common/io/names/mesh_parts.h"
 #include "common/io/tets/vtk_sections.h"
 #include "common/io/text/text_scanner.h"
 #include "common/lower_case.h"
 #include "tetwright/error.h"
 #include "tetwright/io.h"
+#include "tetwright/parted_interfaces.h"
 
 namespace tetwright {
 
@@ -78,6 +80,7 @@ class VtkReader final : private VtkSections {
                std::to_string(cells_.count()) + " cells; the file is damaged");
     for (std::size_t c = 0; c < types_.size(); ++c) {
       if (!is_vtk_tet(types_[c])) {
+        if (types_[c] == element::wedge.vtk && take_wedge(c)) continue;
         if (is_vtk_triangle(types_[c])) triangle_to_cell_.push_back(c);
         other_cells_.add(types_[c], c);
         continue;
@@ -92,13 +95,23 @@ class VtkReader final : private VtkSections {
     if (triangle_to_cell_.empty()) cells_.free_points();
   }
 
-  /// Nodes of a tet or triangle.
+  /// Takes a wedge if it is a cohesive element.
+  bool take_wedge(std::size_t c) {
+    const std::vector<Index> nodes = nodes_of(c);
+    Wedge wedge;
+    for (std::size_t k = 0; k < wedge.size(); ++k) wedge[k] = nodes[vtk_wedge_order[k]];
+    if (!is_cohesive(wedge, points_)) return false;
+    result_.mesh.wedges.push_back(wedge);
+    return true;
+  }
+
+  /// Nodes of a tet, triangle or wedge.
   std::vector<Index> nodes_of(std::size_t c) const {
     const std::size_t begin = cells_.begin(c), size = cells_.size(c);
     if (size != vtk_element_type(types_[c])->nodes)
       fail_at(cells_begin_, begin,
               "cell " + std::to_string(c) + " (counted from 0) is a " +
-                  (is_vtk_tet(types_[c]) ? "tet" : "triangle") + " of " + std::to_string(size) +
+                  (is_vtk_tet(types_[c]) ? "tet" : is_vtk_triangle(types_[c]) ? "triangle" : "wedge") + " of " + std::to_string(size) +
                   " points; the file is damaged");
     std::vector<Index> nodes;
     for (std::size_t k = begin; k < begin + size; ++k)

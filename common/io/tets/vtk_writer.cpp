@@ -74,7 +74,9 @@ void write_vtk(const MeshToWrite& written, const ByteSink& sink) {
   const TetMesh& mesh = written.mesh;
   const MidsideNodes* midside = written.midside;
   const MeshParts parts = mesh_parts(mesh, printable_names());
-  const std::size_t tets = mesh.tets.size(), triangles = mesh.interfaces.size();
+  const std::vector<CohesivePart> cohesive = cohesive_parts(mesh, parts.materials, printable_names());
+  const std::size_t tets = mesh.tets.size(), triangles = mesh.interfaces.size(),
+                    cells = tets + triangles + mesh.wedges.size();
   TextWriter out(sink);
   out << "# vtk DataFile Version 3.0\nwritten by tetwright\nASCII\nDATASET UNSTRUCTURED_GRID\n";
   out << "POINTS " << written.nodes() << " double\n";
@@ -83,7 +85,8 @@ void write_vtk(const MeshToWrite& written, const ByteSink& sink) {
     out << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
   }
   const std::size_t of_tet = midside ? 10 : 4, of_triangle = midside ? 6 : 3;
-  out << "CELLS " << tets + triangles << ' ' << tets * (1 + of_tet) + triangles * (1 + of_triangle) << '\n';
+  out << "CELLS " << cells << ' '
+      << tets * (1 + of_tet) + triangles * (1 + of_triangle) + mesh.wedges.size() * 7 << '\n';
   for (std::size_t t = 0; t < tets; ++t) {
     out << of_tet;
     for (const Index v : mesh.tets[t]) out << ' ' << v;
@@ -98,19 +101,31 @@ void write_vtk(const MeshToWrite& written, const ByteSink& sink) {
       for (const Index m : midside->of_faces[i]) out << ' ' << mesh.points.size() + m;
     out << '\n';
   }
-  out << "CELL_TYPES " << tets + triangles << '\n';
+  for (const CohesivePart& part : cohesive)
+    for (const std::size_t w : part.wedges) {
+      out << 6;
+      for (const std::size_t k : vtk_wedge_order) out << ' ' << mesh.wedges[w][k];
+      out << '\n';
+    }
+  out << "CELL_TYPES " << cells << '\n';
   for (std::size_t t = 0; t < tets; ++t)
     out << (midside ? element::quadratic_tet.vtk : element::tet.vtk) << '\n';
   for (std::size_t i = 0; i < triangles; ++i)
     out << (midside ? element::quadratic_triangle.vtk : element::triangle.vtk) << '\n';
+  for (std::size_t w = 0; w < mesh.wedges.size(); ++w) out << element::wedge.vtk << '\n';
   // Simple readers expect the points first.
   out << "FIELD FieldData " << (parts.surfaces.empty() ? 1 : 2) << '\n';
-  write_names(out, vtk_material_names, parts.materials, [](const auto& m) { return m.tag; });
+  std::vector<MeshParts::Material> solids = parts.materials;
+  for (const CohesivePart& part : cohesive)
+    solids.push_back({static_cast<MaterialTag>(part.number), part.number, part.name, {}});
+  write_names(out, vtk_material_names, solids, [](const auto& m) { return m.tag; });
   if (!parts.surfaces.empty())
     write_names(out, vtk_surface_names, parts.surfaces, [](const auto& s) { return s.number; });
-  out << "CELL_DATA " << tets + triangles << "\nSCALARS material int 1\nLOOKUP_TABLE default\n";
+  out << "CELL_DATA " << cells << "\nSCALARS material int 1\nLOOKUP_TABLE default\n";
   for (const MaterialTag tag : mesh.materials) out << tag << '\n';
   for (const InterfaceTriangle& t : mesh.interfaces) out << t.material << '\n';
+  for (const CohesivePart& part : cohesive)
+    for (std::size_t i = 0; i < part.wedges.size(); ++i) out << part.number << '\n';
   if (triangles > 0) {
     std::vector<std::int64_t> surface_of(triangles);
     for (const MeshParts::Surface& s : parts.surfaces)
@@ -118,10 +133,11 @@ void write_vtk(const MeshToWrite& written, const ByteSink& sink) {
     out << "SCALARS " << vtk_surface_field << " int 1\nLOOKUP_TABLE default\n";
     for (std::size_t t = 0; t < tets; ++t) out << "0\n";
     for (const std::int64_t number : surface_of) out << number << '\n';
+    for (std::size_t w = 0; w < mesh.wedges.size(); ++w) out << "0\n";
   }
   std::vector<MeshField> fields = mesh.cell_fields;
-  for (MeshField& field : fields) field = with_triangles(std::move(field), triangles);
-  write_fields(out, fields, {"material", vtk_surface_field}, tets + triangles);
+  for (MeshField& field : fields) field = with_triangles(std::move(field), cells - tets);
+  write_fields(out, fields, {"material", vtk_surface_field}, cells);
   if (!mesh.point_fields.empty()) {
     out << "POINT_DATA " << written.nodes() << '\n';
     write_fields(out, written.node_fields(), {}, written.nodes());

@@ -19,6 +19,7 @@
 #include "common/io/text/text_scanner.h"
 #include "common/parallel/touched_memory.h"
 #include "tetwright/error.h"
+#include "tetwright/parted_interfaces.h"
 #include "tetwright/resources.h"
 
 namespace tetwright {
@@ -218,6 +219,9 @@ class VtuReader {
         result_.mesh.tets.push_back({ids[0], ids[1], ids[2], ids[3]});
         if (nodes > 4) midside_of_tets_.insert(midside_of_tets_.end(), ids.begin() + 4, ids.end());
         tet_to_cell.push_back(c);
+      } else if (types[c] == element::wedge.vtk && end - begin == 6 &&
+                 take_wedge([&](std::size_t k) { return node_of(c, k); })) {
+        // It has no fields.
       } else {
         other_cells_.add(types[c], c);
         // A triangle that is not one of this program's surfaces is only counted, whatever its points are.
@@ -234,6 +238,16 @@ class VtuReader {
     if (other_cells_.has_volumes()) data_->fail(types_node, other_cells_.refusal());
     if (tet_to_cell.size() == cell_count) return std::nullopt;
     return tet_to_cell;
+  }
+
+  /// Takes a wedge if it is a cohesive element.
+  template <class NodeOf>
+  bool take_wedge(const NodeOf& node_of) {
+    Wedge wedge;
+    for (std::size_t k = 0; k < wedge.size(); ++k) wedge[k] = node_of(vtk_wedge_order[k]);
+    if (!is_cohesive(wedge, result_.mesh.points)) return false;
+    result_.mesh.wedges.push_back(wedge);
+    return true;
   }
 
   /// Merges the points at which pieces meet: points with equal coordinates become the point of the first
@@ -295,6 +309,8 @@ class VtuReader {
     for (Index& p : midside_of_triangles_) p = to[p];
     for (Triangle& t : triangles_.triangles)
       for (Index& p : t) p = to[p];
+    for (Wedge& wedge : mesh.wedges)
+      for (Index& p : wedge) p = to[p];
   }
 
   /// Names in an array of the dataset, with their numbers.

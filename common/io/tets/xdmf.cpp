@@ -22,6 +22,7 @@
 #include "common/message_text.h"
 #include "tetwright/error.h"
 #include "tetwright/io.h"
+#include "tetwright/parted_interfaces.h"
 
 namespace tetwright {
 
@@ -30,7 +31,14 @@ namespace {
 constexpr const char* xdmf_material = "material";
 constexpr const char* facet_attribute = "facet_tags";
 
-constexpr std::size_t tet_nodes = 4, quadratic_tet_nodes = 10;
+constexpr const char* cohesive_grid = "cohesive";
+
+constexpr std::size_t tet_nodes = 4, quadratic_tet_nodes = 10, wedge_nodes = 6;
+
+/// Cohesive elements, with numbers that no material has.
+std::vector<CohesivePart> xdmf_cohesive(const TetMesh& mesh) {
+  return cohesive_parts(mesh, names_of_parts(mesh, printable_names()).materials, printable_names());
+}
 
 class XdmfReader {
  public:
@@ -46,6 +54,7 @@ class XdmfReader {
     const pugi::xml_node grid = choose_grid();
     read_points(grid);
     read_tets(grid);
+    if (cohesive_) read_wedges();
     for (const pugi::xml_node attribute : grid.children("Attribute")) read_attribute(attribute);
     for (const auto& [tag, name] : names_of(grid, "3"))
       result_.mesh.material_names[checked_material(tag, name_, 0)] = name;
@@ -83,6 +92,8 @@ class XdmfReader {
       const std::string topology = topology_of(grid);
       if (!chosen && nodes_of(topology) > 0)
         chosen = grid;
+      else if (!cohesive_ && topology == "wedge" && grid.attribute("Name").as_string() == std::string(cohesive_grid))
+        cohesive_ = grid;
       else
         ++other_grids;
       if (nodes_of(topology) == 0 && others.empty()) others = topology;
@@ -189,6 +200,27 @@ class XdmfReader {
     }
   }
 
+  /// Reads the cohesive elements of write_xdmf_mesh().
+  void read_wedges() {
+    const pugi::xml_node topology = cohesive_.child("Topology");
+    const std::size_t rows = checked_rows(topology, "wedges");
+    const std::vector<double> values = numbers(topology, wedge_nodes * rows);
+    if (values.size() != wedge_nodes * rows)
+      fail(topology, "there are fewer nodes of wedges than its Dimensions say");
+    KindCounts others;
+    for (std::size_t w = 0; w < rows; ++w) {
+      Wedge wedge;
+      for (std::size_t k = 0; k < wedge_nodes; ++k)
+        wedge[k] = index_of(topology, "wedge", w, values[wedge_nodes * w + vtk_wedge_order[k]],
+                            result_.mesh.points.size());
+      if (is_cohesive(wedge, result_.mesh.points))
+        result_.mesh.wedges.push_back(wedge);
+      else
+        others.add(element::wedge.name);
+    }
+    if (!others.empty()) fail(topology, unsupported_cells(others, "in this grid"));
+  }
+
   void read_attribute(pugi::xml_node attribute) {
     const std::string center = attribute.attribute("Center").as_string("Node");
     if (center != "Node" && center != "Cell") {
@@ -273,6 +305,7 @@ class XdmfReader {
   pugi::xml_document document_;
   std::map<std::string, std::unique_ptr<Hdf5Reader>> hdf5_;
   ReadTetMesh result_;
+  pugi::xml_node cohesive_;  ///< grid of cohesive elements
   MidsideNodesRead midside_;
   KindCounts rounded_;  ///< rounded integers of fields
 };
@@ -312,6 +345,20 @@ void write_names(TextWriter& out, const Parts& parts, int dimension, const Numbe
     text += "<map key=\"" + xml_text(part.name) + "\" dim=\"" + std::to_string(dimension) + "\">" +
             std::to_string(number_of(part)) + "</map>";
   out << "<Information Name=\"names\">" << xml_text(text + "</main>") << "</Information>\n";
+}
+
+/// Writes cohesive elements as a grid of their own, since dolfinx reads no grid of tets and wedges.
+void write_cohesive(TextWriter& out, const MeshToWrite& written, const std::string& hdf5) {
+  const std::size_t wedges = written.mesh.wedges.size();
+  out << "<Grid Name=\"" << cohesive_grid << "\" GridType=\"Uniform\">\n<Topology TopologyType=\"Wedge\" "
+      << "NumberOfElements=\"" << wedges << "\" NodesPerElement=\"" << wedge_nodes << "\">\n";
+  write_item(out, hdf5, "wedges", wedges, wedge_nodes, true, 8);
+  out << "</Topology>\n";
+  write_geometry(out, written, hdf5);
+  write_names(out, xdmf_cohesive(written.mesh), 3, [](const auto& part) { return part.number; });
+  out << "<Attribute Name=\"" << xdmf_material << "\" AttributeType=\"Scalar\" Center=\"Cell\">\n";
+  write_item(out, hdf5, "cohesive", wedges, 1, true, 4);
+  out << "</Attribute>\n</Grid>\n";
 }
 
 /// Name of a field's dataset; the field's own name may be invalid in HDF5.
@@ -371,6 +418,17 @@ void write_xdmf_numbers(const MeshToWrite& written, const ByteSink& sink) {
   file.add("tets", std::span<const std::int64_t>(ids), midside ? quadratic_tet_nodes : tet_nodes);
   file.add(xdmf_material, std::span<const std::int32_t>(mesh.materials), 1);
 
+  if (!mesh.wedges.empty()) {
+    ids.clear();
+    std::vector<std::int32_t> numbers;
+    for (const CohesivePart& part : xdmf_cohesive(mesh))
+      for (const std::size_t w : part.wedges) {
+        for (const std::size_t k : vtk_wedge_order) ids.push_back(mesh.wedges[w][k]);
+        numbers.push_back(static_cast<std::int32_t>(part.number));
+      }
+    file.add("wedges", std::span<const std::int64_t>(ids), wedge_nodes);
+    file.add("cohesive", std::span<const std::int32_t>(numbers), 1);
+  }
   add_fields(file, written.node_fields(), "point_field");
   add_fields(file, mesh.cell_fields, "cell_field");
   sink(file.bytes());
@@ -412,7 +470,9 @@ void write_xdmf_mesh(const MeshToWrite& written, const std::string& hdf5, const 
   out << "</Attribute>\n";
   write_fields(out, mesh.cell_fields, "cell_field", "Cell", mesh.tets.size(), hdf5, {xdmf_material});
   write_fields(out, written.node_fields(), "point_field", "Node", written.nodes(), hdf5, {});
-  out << "</Grid>\n</Domain>\n</Xdmf>\n";
+  out << "</Grid>\n";
+  if (!mesh.wedges.empty()) write_cohesive(out, written, hdf5);
+  out << "</Domain>\n</Xdmf>\n";
   out.flush();
 }
 

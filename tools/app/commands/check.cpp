@@ -38,6 +38,7 @@ TetMesh read_checked(Input input, CommandRun& run, bool& field_found) {
       take_tet_mesh(input, {run.line.options.material_field, run.line.check.before.empty()}, waited);
   field_found |= read.material_field == run.line.options.material_field;
   if (file == run.line.inputs.front()) run.report.material_field = read.material_field;
+  (void)join_read_interfaces(read, file, run.report);
   report_dropped(read.dropped, file, run.report, !run.line.check.json);
   return std::move(read.mesh);
 }

@@ -266,6 +266,7 @@ struct TetFormatInfo {
   bool patch_names;       ///< names of these groups
   bool fields;            ///< fields of points and tets
   bool second_order;      ///< tets of ten nodes
+  bool wedges;            ///< cohesive elements, see TetMesh::wedges; of meshes that are not in parts
   bool parts;             ///< meshes in parts, see TetPartition
   BinsAs bins;            ///< of meshes that are not in parts
   bool moduli;            ///< elastic constants of bins

@@ -103,7 +103,18 @@ struct TetInput {
   TetMesh mesh;  ///< consistently oriented, without fields
   /// The mesh with its fields, for transfer_fields(); std::nullopt if it has none.
   std::optional<TetMesh> with_fields;
+  std::vector<InterfaceToPart> joined;  ///< parted interfaces of the file, joined in the mesh
 };
+
+/// Joins the parted interfaces of a tet mesh that was read, since everything else needs them joined, and
+/// reports them. Wedges that belong to none are reported as dropped.
+///
+/// \param read changed
+/// \param file name of the input in messages
+/// \param with_note false: report only what is dropped
+/// \return for part_interfaces()
+std::vector<InterfaceToPart> join_read_interfaces(ReadTetMesh& read, const std::string& file,
+                                                  PrepareReport& report, bool with_note = true);
 
 /// Reads a tet mesh, makes it coherent (see make_coherent()), and reports findings.
 ///
