@@ -366,8 +366,9 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
      .name = "interfaces-joined",
      .severity = Severity::note,
      .title = "parted interfaces joined",
-     .message = "FILE: the two sides of parted interfaces ('NAME'), N points (joined, and parted again in the "
-                "result)",
+     .message =
+         "FILE: the two sides of parted interfaces ('NAME'), N points (joined, and parted again in the "
+         "result)",
      .cause = "The file has groups of faces NAME:A and NAME:B that coincide: Tetwright parted them.",
      .remedy = "None needed: `check` looks at the joined mesh, where all its rules hold; `simplify` and "
                "`improve` part it again, with its cohesive elements."},

@@ -161,7 +161,8 @@ constexpr std::array request_table = std::to_array<DiagnosticKind>({
      .severity = Severity::shortfall,
      .title = "interface to part not found",
      .message = "--split-interface NAME: no faces to part; there are ...",
-     .cause = "The two materials do not touch, or no sheet or group of faces between materials has this name.",
+     .cause =
+         "The two materials do not touch, or no sheet or group of faces between materials has this name.",
      .remedy = "One of the names in the message. Names are those in the result."},
     {.code = notes_not_allowed,
      .name = "notes-not-allowed",
@@ -204,8 +205,9 @@ constexpr std::array request_table = std::to_array<DiagnosticKind>({
      .severity = Severity::note,
      .title = "faces that could not part",
      .message = "N of N faces of 'NAME' stay joined, as all their corners lie on its border: one at X Y Z",
-     .cause = "The border of what parts keeps its points, since the tets around them are connected elsewhere. "
-              "There the interface is one triangle wide.",
+     .cause =
+         "The border of what parts keeps its points, since the tets around them are connected elsewhere. "
+         "There the interface is one triangle wide.",
      .remedy = "A higher `--target-tets`, or part the neighbouring interfaces, too."},
     {.code = gap_closed,
      .name = "gap-closed",

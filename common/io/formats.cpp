@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <type_traits>
 #include <set>
+#include <type_traits>
 
 #include "common/files/file_names.h"
 #include "common/geometry/measurable.h"
@@ -118,9 +118,10 @@ const typename Formats::value_type& need_format(const Formats& formats, const st
 }
 
 TetFormatInfo info_of(const TetFormat& format) {
-  return {format.name,        format.extension, format.names,        format.surfaces,
-          format.patch_names, format.fields,    format.second_order, format.wedges, static_cast<bool>(format.part_files),
-          format.bins,        format.moduli};
+  return {format.name,         format.extension,   format.names,
+          format.surfaces,     format.patch_names, format.fields,
+          format.second_order, format.wedges,      static_cast<bool>(format.part_files),
+          format.bins,         format.moduli};
 }
 
 /// A format of several files replaces the path's extension by its own ones. The path must not have the

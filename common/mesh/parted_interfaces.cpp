@@ -56,7 +56,8 @@ std::string material_name(const TetMesh& mesh, MaterialTag tag) {
 }
 
 std::string name_of_pair(const TetMesh& mesh, const MaterialPair& pair) {
-  return material_name(mesh, pair.first) + "|" + (pair.second ? material_name(mesh, *pair.second) : "outside");
+  return material_name(mesh, pair.first) + "|" +
+         (pair.second ? material_name(mesh, *pair.second) : "outside");
 }
 
 /// Sorts the triangles as find_interfaces() does, the sheets after the others.
@@ -83,7 +84,8 @@ class NewPatches {
   std::uint16_t add(const MaterialPair& pair) {
     std::uint32_t& next = next_.try_emplace(pair, 0).first->second;
     if (next > std::numeric_limits<std::uint16_t>::max())
-      throw OutputError("the boundary of a material would have more than 65,536 patches; part fewer interfaces");
+      throw OutputError(
+          "the boundary of a material would have more than 65,536 patches; part fewer interfaces");
     return static_cast<std::uint16_t>(next++);
   }
 
@@ -234,8 +236,7 @@ class Parter {
     PartedInterface& parted = result_for(face, rule);
     if (a == b) {
       if (++parted.joined_faces <= max_joined_places)
-        parted.joined_places.push_back(
-            (mesh_.points[a[0]] + mesh_.points[a[1]] + mesh_.points[a[2]]) / 3);
+        parted.joined_places.push_back((mesh_.points[a[0]] + mesh_.points[a[1]] + mesh_.points[a[2]]) / 3);
       face.ids = a;
       after.push_back(face);
       return;
@@ -258,11 +259,13 @@ class Parter {
 
   PartedInterface& result_for(const InterfaceTriangle& face, const InterfaceToPart& rule) {
     const SurfaceRegion group = group_of(mesh_, face);
-    std::string name = !group.name.empty() ? group.name
-                       : group             ? "surface_" + std::to_string(group.number)
-                                           : name_of_pair(mesh_, face.pair());
-    if (group && pairs_of_[group].size() > 1) name += " " + name_of_pair(mesh_, face.pair());
+    std::string name = rule.materials ? name_of_pair(mesh_, face.pair()) : group.name;
+    if (!rule.materials && pairs_of_[group].size() > 1) name += " " + name_of_pair(mesh_, face.pair());
     PartedInterface& parted = results_[{name, face.pair()}];
+    if (rule.materials && !group.name.empty() &&
+        std::find(parted.renamed_groups.begin(), parted.renamed_groups.end(), group.name) ==
+            parted.renamed_groups.end())
+      parted.renamed_groups.push_back(group.name);
     if (!parted.name.empty()) return parted;
     parted.name = name;
     parted.cohesive = rule.cohesive;
@@ -300,12 +303,12 @@ class Parter {
   std::span<const InterfaceToPart> interfaces_;
   NewPatches patches_;
   std::map<SurfaceRegion, std::set<MaterialPair>> pairs_of_;  ///< of the groups of parted faces
-  std::vector<const InterfaceToPart*> rules_;   ///< of each interface triangle; null: it stays
-  std::vector<Triangle> parted_;                ///< ids in ascending order, ascending
-  std::vector<std::uint8_t> doubled_;           ///< for each point: whether it has parted faces
-  std::vector<std::uint8_t> near_;              ///< for each point: whether a tet at it has such a point
-  std::vector<MeshFace> faces_;                 ///< between points that are near
-  std::vector<Tet> tets_;                       ///< with the new points
+  std::vector<const InterfaceToPart*> rules_;                 ///< of each interface triangle; null: it stays
+  std::vector<Triangle> parted_;                              ///< ids in ascending order, ascending
+  std::vector<std::uint8_t> doubled_;                         ///< for each point: whether it has parted faces
+  std::vector<std::uint8_t> near_;  ///< for each point: whether a tet at it has such a point
+  std::vector<MeshFace> faces_;     ///< between points that are near
+  std::vector<Tet> tets_;           ///< with the new points
   std::map<std::pair<std::string, MaterialPair>, PartedInterface> results_;
   std::map<InterfacePatch, std::array<std::uint16_t, 2>> patches_of_;
 };
@@ -419,8 +422,8 @@ class Joiner {
       const MaterialTag larger = swapped ? first.material : second.material;
       faces_.push_back({smaller.ids, smaller.material, larger, interface});
       wedge_faces_[place_of(f)] = interface;
-      named_after_materials &= smaller.material != larger &&
-                               name == name_of_pair(mesh_, {smaller.material, larger});
+      named_after_materials &=
+          smaller.material != larger && name == name_of_pair(mesh_, {smaller.material, larger});
     }
     InterfaceToPart part;
     if (named_after_materials)
@@ -507,7 +510,8 @@ class Joiner {
     }
     mesh_.interfaces = find_interfaces(mesh_);
     for (InterfaceTriangle& t : mesh_.interfaces)
-      if (const auto known = before.find(ascending(t.ids)); known != before.end()) t.patch = known->second.patch;
+      if (const auto known = before.find(ascending(t.ids)); known != before.end())
+        t.patch = known->second.patch;
     append_sheets(mesh_.interfaces, std::move(sheets));
     drop_unused_groups();
   }
@@ -537,6 +541,18 @@ std::vector<PartedInterface> part_interfaces(TetMesh& mesh, MidsideNodes* midsid
 }
 
 JoinedInterfaces join_parted_interfaces(TetMesh& mesh) { return Joiner(mesh).join(); }
+
+std::string table_of_pairs(std::span<const PartedInterface> parted) {
+  std::string out = "interface,first,second\n";
+  for (const PartedInterface& p : parted) {
+    std::string name = "\"";
+    for (const char c : p.name) name += c == '"' ? std::string("\"\"") : std::string(1, c);
+    for (const auto& [first, second] : p.pairs)
+      out += name + "\"," + std::to_string(std::uint64_t{first} + 1) + ',' +
+             std::to_string(std::uint64_t{second} + 1) + '\n';
+  }
+  return out;
+}
 
 std::vector<std::size_t> parted_faces(const TetMesh& mesh) {
   return Joiner(const_cast<TetMesh&>(mesh)).find();  // NOLINT(cppcoreguidelines-pro-type-const-cast)

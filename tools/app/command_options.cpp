@@ -14,6 +14,7 @@
 #include "tools/app/brick_options.h"
 #include "tools/app/command_line.h"
 #include "tools/app/image_options.h"
+#include "tools/app/interface_options.h"
 #include "tools/app/label_ranges.h"
 #include "tools/app/option_values.h"
 #include "tools/app/value_options.h"
@@ -304,6 +305,7 @@ void add_prepare(CLI::App& app, CommandLine& c) {
   add_labels(app, c);
   add_images(app, c);
   add_values_options(app, c);
+  add_interface_options(app, c);
   add_bricks(app, c);
   add_stats(app, c);
   add_common(app, c);
@@ -321,6 +323,7 @@ void add_mesh(CLI::App& app, CommandLine& c) {
   add_labels(app, c);
   add_images(app, c);
   add_values_options(app, c);
+  add_interface_options(app, c);
   add_stats(app, c);
   add_common(app, c);
   add_time_limit(app, c);
@@ -335,6 +338,7 @@ void add_simplify(CLI::App& app, CommandLine& c) {
   add_fix_boundary(app, c);
   add_feature_angle(app, c.options.feature_angle);
   add_values_options(app, c);
+  add_interface_options(app, c);
   add_strict(app, c);
   add_material_field(app, c);
   add_stats(app, c);
@@ -358,6 +362,7 @@ void add_improve(CLI::App& app, CommandLine& c) {
   add_fix_boundary(app, c);
   add_feature_angle(app, c.options.feature_angle);
   add_values_options(app, c);
+  add_interface_options(app, c);
   add_strict(app, c);
   add_material_field(app, c);
   add_stats(app, c);

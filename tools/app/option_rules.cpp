@@ -13,6 +13,7 @@
 #include "tetwright/io.h"
 #include "tetwright/prepare_steps.h"
 #include "tools/app/commands/output_paths.h"
+#include "tools/app/interface_options.h"
 #include "tools/app/value_options.h"
 
 namespace tetwright {
@@ -137,6 +138,7 @@ void complete_command_line(CommandLine& out) {
     throw UsageError("--tolerance needs the surfaces that the mesh is compared with; give --surface FILE");
   if (out.options.order > 1 && !out.outputs.mesh.empty())
     check_holds_second_order(out.outputs.mesh, out.outputs.format);
+  check_interface_options(out);
   check_parts(out);
   check_foam(out);
   if (out.check.json && out.outputs.stats == "-")

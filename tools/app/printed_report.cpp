@@ -110,6 +110,15 @@ std::string lost_curves_line(const FeatureReport& f) {
   return lost.empty() ? "" : printable("curves of '" + f.name + "' that are not kept: " + lost);
 }
 
+/// Line such as "bone|implant: parted, 32 faces and 25 pairs of points, with cohesive elements".
+std::string parted_line(const PartedInterface& p) {
+  std::string line =
+      text("%s: parted, %zu faces and %zu pairs of points", p.name.c_str(), p.faces, p.pairs.size());
+  if (p.cohesive) line += ", with cohesive elements";
+  if (p.degenerate_wedges > 0) line += text(" (%zu at a border that stays joined)", p.degenerate_wedges);
+  return line;
+}
+
 /// Line such as "caps: 2 of 2 holes, 12.3 % of the boundary: cap_1 (area 0.5, flat), cap_2 (area 0.1)".
 std::string caps_line(const CapReport& report) {
   std::string line =
@@ -220,6 +229,7 @@ void print_report(const CommandLine& line, const PrepareReport& run, const Parti
   if (!run.patches.empty()) std::printf("%s\n", patches_line(run.patches).c_str());
   if (run.caps) std::printf("%s\n", caps_line(*run.caps).c_str());
   print_contacts(run.contacts);
+  for (const PartedInterface& p : run.parted) std::printf("%s\n", parted_line(p).c_str());
   if (run.result)
     for (const SheetStatistics& s : run.result->sheets) std::printf("%s\n", sheet_line(s).c_str());
   if (run.crease_comparison) {

@@ -3,9 +3,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <optional>
-#include <system_error>
 #include <set>
+#include <system_error>
 #include <utility>
 
 #include "common/message_text.h"
@@ -93,15 +94,21 @@ void report_missing(const InterfaceRequest& request, const TetMesh& mesh, const 
        .count = 1});
 }
 
-void report_joined_faces(const std::vector<PartedInterface>& parted, PrepareReport& report) {
+void report_parted(const std::vector<PartedInterface>& parted, PrepareReport& report) {
   for (const PartedInterface& p : parted) {
+    if (!p.renamed_groups.empty())
+      report.diagnostics.push_back({.code = DiagnosticCode::names_changed,
+                                    .what = "names of patches (" + quoted_list(p.renamed_groups) + ")",
+                                    .count = p.renamed_groups.size(),
+                                    .done = "replaced by those of the sides, " + in_quotes(p.sides[0]) +
+                                            " and " + in_quotes(p.sides[1])});
     if (p.joined_faces == 0) continue;
-    report.diagnostics.push_back({.code = DiagnosticCode::faces_not_parted,
-                                  .what = "of " + std::to_string(p.faces + p.joined_faces) + " faces of " +
-                                          in_quotes(p.name),
-                                  .count = p.joined_faces,
-                                  .done = "stay joined, as all their corners lie on its border",
-                                  .places = p.joined_places});
+    report.diagnostics.push_back(
+        {.code = DiagnosticCode::faces_not_parted,
+         .what = "of " + std::to_string(p.faces + p.joined_faces) + " faces of " + in_quotes(p.name),
+         .count = p.joined_faces,
+         .done = "stay joined, as all their corners lie on its border",
+         .places = p.joined_places});
   }
 }
 
@@ -113,8 +120,9 @@ void check_parting(const PrepareOptions& options) {
       throw UsageError(std::string(option_of(request)) +
                        " without a name; give A,B (two materials), all, or the name of a sheet");
     if (request.cohesive && options.order == 2)
-      throw UsageError("--cohesive makes wedges of six nodes, which do not fit tets of second order; leave out "
-                       "either it or --order 2");
+      throw UsageError(
+          "--cohesive makes wedges of six nodes, which do not fit tets of second order; leave out "
+          "either it or --order 2");
   }
 }
 
@@ -122,17 +130,18 @@ void part_result(Prepared& result, std::span<const InterfaceToPart> joined, Prep
   TetMesh& mesh = result.mesh;
   std::vector<InterfaceToPart> faces;
   const InnerFaces inner(mesh);
-  for (const bool cohesive : {true, false})
+  for (const bool cohesive : {true, false}) {
     for (const InterfaceRequest& request : run.options.parting) {
       if (request.cohesive != cohesive) continue;
       const std::vector<InterfaceToPart> found = faces_of(request, mesh, inner);
       if (found.empty()) report_missing(request, mesh, inner, run.report);
       faces.insert(faces.end(), found.begin(), found.end());
     }
-  faces.insert(faces.end(), joined.begin(), joined.end());
-  if (!faces.empty())
-    run.report.parted = part_interfaces(mesh, run.midside ? &*run.midside : nullptr, faces);
-  report_joined_faces(run.report.parted, run.report);
+    std::copy_if(joined.begin(), joined.end(), std::back_inserter(faces),
+                 [&](const InterfaceToPart& part) { return part.cohesive == cohesive; });
+  }
+  if (!faces.empty()) run.report.parted = part_interfaces(mesh, run.midside ? &*run.midside : nullptr, faces);
+  report_parted(run.report.parted, run.report);
   if (run.report.result) run.report.result->points = mesh.points.size();
   decide_severities(run.options.acceptance, run.report);
 }

@@ -18,7 +18,8 @@ namespace tetwright {
 void check_parting(const PrepareOptions& options);
 
 /// Parts the interfaces of a result: those requested, and those that were joined in the input. Reports
-/// requests without faces, and faces that stay joined.
+/// requests without faces, and faces that stay joined. Cohesive ones take precedence, so that those of the
+/// input stay.
 ///
 /// \param joined from the input
 void part_result(Prepared& result, std::span<const InterfaceToPart> joined, PrepareRun& run);

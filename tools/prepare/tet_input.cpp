@@ -55,7 +55,8 @@ void require_first_order_wedges(const std::vector<InterfaceToPart>& joined, cons
                                 const std::string& file) {
   if (options.order == 2 &&
       std::any_of(joined.begin(), joined.end(), [](const InterfaceToPart& part) { return part.cohesive; }))
-    throw UsageError(file + " has cohesive elements, which do not fit tets of second order; leave out --order 2");
+    throw UsageError(file +
+                     " has cohesive elements, which do not fit tets of second order; leave out --order 2");
 }
 
 }  // namespace

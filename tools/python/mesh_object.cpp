@@ -84,6 +84,21 @@ py::tuple groups_of(const TetMesh& mesh) {
   return py::make_tuple(numbers, names, of_patches);
 }
 
+/// Name, groups of both sides, pairs of points and whether there are cohesive elements, for each interface
+/// that was parted.
+py::list parted_of(const Mesh& mesh) {
+  py::list all;
+  for (const PartedInterface& p : mesh.parted) {
+    py::array_t<std::int64_t> pairs({static_cast<py::ssize_t>(p.pairs.size()), py::ssize_t{2}});
+    for (std::size_t i = 0; i < p.pairs.size(); ++i)
+      for (std::size_t k = 0; k < 2; ++k)
+        pairs.mutable_at(static_cast<py::ssize_t>(i), static_cast<py::ssize_t>(k)) = p.pairs[i][k];
+    all.append(py::make_tuple(to_text(p.name), py::make_tuple(to_text(p.sides[0]), to_text(p.sides[1])),
+                              pairs, p.cohesive));
+  }
+  return all;
+}
+
 /// For each interface triangle, the tet on the side of its `material`.
 py::array_t<Index> tets_beside(const TetMesh& mesh) {
   py::array_t<Index> tets(static_cast<py::ssize_t>(mesh.interfaces.size()));
@@ -112,6 +127,7 @@ void write_mesh_files(Mesh& mesh, const std::string& path, const std::string& fo
   line.outputs.no_boundary = no_boundary;
   line.outputs.parts = parts;
   for (const TetBins& bins : mesh.bins) line.options.values.bins.push_back({bins.field, {}});
+  for (const PartedInterface& p : mesh.parted) line.options.parting.push_back({p.name, p.cohesive});
   check_no_standard_output(line);
   check_output_paths(line);
   if (mesh.midside) check_holds_second_order(path, format);
@@ -134,10 +150,13 @@ void write_mesh_files(Mesh& mesh, const std::string& path, const std::string& fo
   if (!boundary.empty()) write_interfaces(mesh.mesh, boundary, &files);
   if (const std::string table = bins_table_of(line); !table.empty())
     files.write(table, table_of_bins(mesh.mesh, mesh.bins));
+  if (const std::string table = pairs_table_of(line); !table.empty())
+    files.write(table, table_of_pairs(mesh.parted));
   files.commit();
   PrepareReport report;
   report.patches = patches_of_input(mesh.mesh);
   report.bins = mesh.bins;
+  report.parted = mesh.parted;
   find_unwritten(line, mesh.mesh, report);
   // The interpreter's lock protects the mesh's own lists from other threads.
   const py::gil_scoped_acquire acquire;
@@ -163,6 +182,12 @@ void bind_mesh(py::module_& module) {
                                const auto& tets = self.cast<const Mesh&>().mesh.tets;
                                return view<Index>(tets, tets.data(), 4, self);
                              })
+      .def_property_readonly("wedges",
+                             [](const py::object& self) {
+                               const auto& wedges = self.cast<const Mesh&>().mesh.wedges;
+                               return view<Index>(wedges, wedges.data(), 6, self);
+                             })
+      .def("parted", &parted_of)
       .def_property_readonly("materials",
                              [](const py::object& self) {
                                const auto& materials = self.cast<const Mesh&>().mesh.materials;

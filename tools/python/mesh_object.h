@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "tetwright/parted_interfaces.h"
 #include "tetwright/tet_mesh.h"
 #include "tools/app/command_line.h"
 
@@ -19,7 +20,8 @@ struct Mesh {
   TetMesh mesh;
   std::optional<MidsideNodes> midside;
   std::vector<TetBins> bins;
-  std::string stats;  ///< JSON; empty if no command made it
+  std::vector<PartedInterface> parted;  ///< by the command
+  std::string stats;                    ///< JSON; empty if no command made it
   std::vector<std::string> notes, shortfall;
 };
 

@@ -164,6 +164,7 @@ std::shared_ptr<Mesh> run(std::vector<std::string> arguments, NamedInputs& input
           made->mesh = std::move(result.mesh);
           made->midside = std::move(result.midside);
           made->bins = std::move(result.bins);
+          made->parted = std::move(run.report.parted);
         });
       },
       progress, callback);

@@ -270,6 +270,19 @@ nlohmann::json patches_json(const std::vector<PatchComparison>& all) {
   return j;
 }
 
+nlohmann::json parted_json(const std::vector<PartedInterface>& parted) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const PartedInterface& p : parted)
+    all.push_back({{"name", p.name},
+                   {"sides", p.sides},
+                   {"faces", p.faces},
+                   {"joined_faces", p.joined_faces},
+                   {"pairs", p.pairs.size()},
+                   {"cohesive", p.cohesive},
+                   {"degenerate_wedges", p.degenerate_wedges}});
+  return all;
+}
+
 nlohmann::json caps_json(const CapReport& report) {
   nlohmann::json j = {{"holes", report.holes},
                       {"flat", report.flat},
@@ -426,6 +439,7 @@ std::string stats_json(const CommandRun& ended) {
                          {"on_surface", run.second_order->on_surface},
                          {"part_way", run.second_order->part_way},
                          {"straight", run.second_order->straight}};
+  if (!run.parted.empty()) j["parted"] = parted_json(run.parted);
   if (!run.values.empty()) j["values"] = values_json(run.values);
   if (!run.bins.empty()) j["bins"] = bins_json(run.bins);
   if (ended.parts) j["parts"] = partition_json(*ended.parts);

@@ -24,11 +24,13 @@ struct InterfaceToPart {
 
 /// An interface that was parted.
 struct PartedInterface {
-  /// Name of the faces' group, or of the pair of materials: "bone|implant".
+  /// Name of the pair of materials, "bone|implant"; or of the faces' group, if that was to part.
   std::string name;
   /// Groups of the two sides, NAME:SIDE: "bone|implant:bone" and "bone|implant:implant". The sides of a sheet
   /// are "back", from which its normals point away, and "front".
   std::array<std::string, 2> sides;
+  /// Groups with faces between the materials, whose names those of the sides replace.
+  std::vector<std::string> renamed_groups = {};
   bool cohesive = false;
   std::size_t faces = 0;  ///< on each side
   /// Faces that stay as they are, since the tets around each of their corners are connected elsewhere: all
@@ -43,11 +45,11 @@ struct PartedInterface {
 
 /// Doubles the points of interfaces, so that both sides have faces and points of their own.
 ///
-/// A point gets a copy for each group of tets at it that are connected across faces which are not parted, less
-/// one: three where three parted bodies meet, none at the border of a crack inside a body. The first of these
-/// groups (by tets) keeps the point, copies are appended. The interface triangles of both sides become faces
-/// of the boundary, in groups named after their interface and side. With InterfaceToPart::cohesive each pair
-/// of faces becomes a wedge (TetMesh::wedges). Fields are copied.
+/// A point gets a copy for each group of tets at it that are connected across faces which are not parted,
+/// less one: three where three parted bodies meet, none at the border of a crack inside a body. The first of
+/// these groups (by tets) keeps the point, copies are appended. The interface triangles of both sides become
+/// faces of the boundary, in groups named after their interface and side. With InterfaceToPart::cohesive each
+/// pair of faces becomes a wedge (TetMesh::wedges). Fields are copied.
 ///
 /// \param mesh a mesh with its interfaces; changed
 /// \param midside the mesh's midside nodes, changed accordingly; may be null
@@ -69,12 +71,16 @@ struct JoinedInterfaces {
 
 /// Undoes part_interfaces(): finds pairs of groups of boundary faces with the names NAME:A and NAME:B whose
 /// faces coincide one by one, with exactly equal coordinates, and joins their points. Their faces become the
-/// interface again, in the group NAME unless that is the name of its materials. Other faces that coincide stay
-/// apart. Wedges are removed. A joined point has the field values of its first copy. O(n log n).
+/// interface again, in the group NAME unless that is the name of its materials. Other faces that coincide
+/// stay apart. Wedges are removed. A joined point has the field values of its first copy. O(n log n).
 ///
 /// \param mesh changed if there is such a pair, or a wedge; then its interfaces are recomputed
 /// \pre indices in range; mesh.interfaces are faces of tets
 JoinedInterfaces join_parted_interfaces(TetMesh& mesh);
+
+/// Table of the pairs of points as CSV, for constraints between them: name of the interface, number of the
+/// point on the first side and on the second. Numbers count from 1, as in the files of solvers.
+std::string table_of_pairs(std::span<const PartedInterface> parted);
 
 /// The faces of both sides of all parted interfaces that join_parted_interfaces() would find, as indices into
 /// TetMesh::interfaces, ascending.

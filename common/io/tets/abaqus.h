@@ -11,8 +11,8 @@ namespace tetwright {
 
 /// Start of a comment of write_abaqus() that gives the tag of a material; "TAG: NAME" follows.
 inline constexpr const char* abaqus_material_comment = "** material ";
-/// Starts of comments that give the name of a material or a surface in the mesh, if the format cannot hold it;
-/// "NAME: NAME IN THE MESH" follows.
+/// Starts of comments that give the name of a material or a surface in the mesh, if the format cannot hold
+/// it; "NAME: NAME IN THE MESH" follows.
 inline constexpr const char* abaqus_material_name_comment = "** name of material ";
 inline constexpr const char* abaqus_surface_name_comment = "** name of surface ";
 
@@ -37,8 +37,8 @@ ReadTetMesh read_abaqus(std::string_view bytes, const std::string& name,
 /// Writes an input file of Abaqus or CalculiX for *INCLUDE, without steps and material properties. Nodes and
 /// elements are numbered from 1 without gaps, in the order of the mesh. Each material is an element set of
 /// C3D4 or C3D10 elements. Each surface of a mesh with interfaces is a *SURFACE of element faces (on the side
-/// of the smaller tag) and a node set of the same name. Cohesive elements are an element set of COH3D6 for each
-/// parted interface, numbered after the tets. Names are plain_name()s. The format has no fields.
+/// of the smaller tag) and a node set of the same name. Cohesive elements are an element set of COH3D6 for
+/// each parted interface, numbered after the tets. Names are plain_name()s. The format has no fields.
 ///
 /// Both programs read 20 characters of a number: a coordinate that needs more is rounded to what fits, 14
 /// digits in the worst case.

@@ -506,8 +506,9 @@ class AbaqusReader {
   std::vector<std::string> block_names_;             ///< in upper case; empty for *ELEMENT without ELSET
   std::map<std::string, Set> sets_;                  ///< by name in upper case
   std::map<std::string, std::string> set_names_;     ///< as spelled in the file, by name in upper case
-  std::map<std::string, std::string> material_names_, surface_names_;  ///< from comments, by name in upper case
-  std::map<std::string, MaterialTag> tags_;          ///< from comments, by name in upper case
+  std::map<std::string, std::string> material_names_,
+      surface_names_;                                          ///< from comments, by name in upper case
+  std::map<std::string, MaterialTag> tags_;                    ///< from comments, by name in upper case
   std::vector<std::pair<std::string, std::size_t>> sections_;  ///< sets in upper case, with lines
   std::map<std::string, std::vector<Side>> surfaces_;
   std::vector<std::string> node_sets_, other_surfaces_;

@@ -109,7 +109,8 @@ std::string write_msh(const MeshToWrite& written) {
   std::size_t number = mesh.tets.size() + mesh.interfaces.size();
   for (std::size_t i = 0; i < cohesive.size(); ++i)
     for (const std::size_t w : cohesive[i].wedges) {
-      begin_element(out, ++number, element::wedge.msh, cohesive[i].number, std::ssize(tags) + static_cast<std::ptrdiff_t>(i) + 1);
+      begin_element(out, ++number, element::wedge.msh, cohesive[i].number,
+                    std::ssize(tags) + static_cast<std::ptrdiff_t>(i) + 1);
       append_nodes(out, mesh.wedges[w]);
       out += '\n';
     }

@@ -228,8 +228,8 @@ class Msh4Writer {
     numbers_.integer(entity.dimension).integer(entity.number).integer(kind).size(items).end_line();
   }
 
-  /// Writes the elements. Tets are numbered from 1 in the order of the mesh, followed by the triangles and the
-  /// wedges, since fields refer to tets by these numbers.
+  /// Writes the elements. Tets are numbered from 1 in the order of the mesh, followed by the triangles and
+  /// the wedges, since fields refer to tets by these numbers.
   void write_elements() {
     out_ << "$Elements\n";
     const std::size_t all = mesh_.tets.size() + mesh_.interfaces.size() + mesh_.wedges.size();
@@ -238,9 +238,10 @@ class Msh4Writer {
       const Kind kind = kind_of(entity);
       const bool quadratic = written_.midside != nullptr;
       begin_block(entity,
-                  kind == Kind::wedges      ? element::wedge.msh
-                  : kind == Kind::triangles ? (quadratic ? element::quadratic_triangle : element::triangle).msh
-                                            : (quadratic ? element::quadratic_tet : element::tet).msh,
+                  kind == Kind::wedges ? element::wedge.msh
+                  : kind == Kind::triangles
+                      ? (quadratic ? element::quadratic_triangle : element::triangle).msh
+                      : (quadratic ? element::quadratic_tet : element::tet).msh,
                   entity.elements.size());
       for (const std::size_t e : entity.elements) {
         numbers_.size(number_of(kind, e) + 1);

@@ -33,7 +33,7 @@ std::string name_of_piece(const std::string& stem, PartNumber part) {
 void write_field_data(const DividedMesh& whole, const ByteSink& sink) {
   sink("<FieldData>\n");
   std::vector<std::pair<std::int64_t, std::string>> names;
-  for (const MeshParts::Material& m : vtu_parts(whole.names).materials) names.emplace_back(m.tag, m.name);
+  for (const MeshParts::Material& m : vtu_materials(whole.names)) names.emplace_back(m.tag, m.name);
   if (!names.empty()) write_vtu_names(sink, vtk_material_names, names);
   names.clear();
   for (const MeshParts::Surface& s : names_of_parts(whole.names, printable_names()).surfaces)

@@ -106,7 +106,7 @@ constexpr auto printable_parts = parts_by<printable_names>;
 /// Names as .vtu has them, and those of all surfaces.
 MeshParts vtk_piece_parts(const TetMesh& mesh) {
   MeshParts parts = names_of_parts(mesh, printable_names());
-  parts.materials = vtu_parts(mesh).materials;
+  parts.materials = vtu_materials(mesh);
   return parts;
 }
 

@@ -55,8 +55,7 @@ struct TetFormat {
   std::string (*field_name)(const std::string& name) = nullptr;
   bool point_fields = true;  ///< may have point fields when it is read
   // Meaning as in TetFormatInfo.
-  bool names = true, surfaces = true, patch_names = true, fields = true, second_order = false,
-       wedges = false;
+  bool names = true, surfaces = true, patch_names = true, fields = true, second_order = false, wedges = false;
   BinsAs bins = BinsAs::none;
   bool moduli = false;
 };

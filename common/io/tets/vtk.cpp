@@ -111,8 +111,10 @@ class VtkReader final : private VtkSections {
     if (size != vtk_element_type(types_[c])->nodes)
       fail_at(cells_begin_, begin,
               "cell " + std::to_string(c) + " (counted from 0) is a " +
-                  (is_vtk_tet(types_[c]) ? "tet" : is_vtk_triangle(types_[c]) ? "triangle" : "wedge") + " of " + std::to_string(size) +
-                  " points; the file is damaged");
+                  (is_vtk_tet(types_[c])        ? "tet"
+                   : is_vtk_triangle(types_[c]) ? "triangle"
+                                                : "wedge") +
+                  " of " + std::to_string(size) + " points; the file is damaged");
     std::vector<Index> nodes;
     for (std::size_t k = begin; k < begin + size; ++k)
       nodes.push_back(checked_point(cells_, c, k, cells_begin_));

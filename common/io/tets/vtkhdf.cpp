@@ -147,7 +147,7 @@ std::string VtkHdfWriter::bytes() {
   add_list(file, cells + "/" + vtk_ghosts, a.cell_ghosts);
 
   std::vector<std::pair<std::int64_t, std::string>> names;
-  for (const MeshParts::Material& m : vtu_parts(whole_.names).materials) names.emplace_back(m.tag, m.name);
+  for (const MeshParts::Material& m : vtu_materials(whole_.names)) names.emplace_back(m.tag, m.name);
   if (!names.empty()) add_list(file, field_data + "/" + vtk_material_names, bytes_of_names(names));
   names.clear();
   for (const MeshParts::Surface& s : names_of_parts(whole_.names, printable_names()).surfaces)

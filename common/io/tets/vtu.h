@@ -33,13 +33,16 @@ ReadTetMesh read_vtu_files(const std::vector<std::string>& files, const std::str
 /// Int64 if they are integers. Cells are the tets, and the triangles of sheets, which have no other means in
 /// this format: the cell field "surface" gives the number of the sheet, 0 for a tet, and the FieldData array
 /// "surface_names" the names. Triangles of the boundary and of interfaces are left out, since many readers
-/// would take them for elements of the solver.
+/// would take them for elements of the solver, except for those of parted interfaces. Cohesive elements are
+/// wedges with a number of their own in `material`.
 std::string write_vtu(const MeshToWrite& written);
 /// Writes a file piece by piece: needs memory for a few MB and for the compressed numbers of one array at a
 /// time.
 void write_vtu(const MeshToWrite& written, const ByteSink& sink);
 
-/// Names of the materials and sheets in this format, which has no other surfaces.
+/// Names of the materials in this format; needs neither points nor tets.
+std::vector<MeshParts::Material> vtu_materials(const TetMesh& mesh);
+/// These, and the names of sheets and of the sides of parted interfaces; it has no other surfaces.
 MeshParts vtu_parts(const TetMesh& mesh);
 
 }  // namespace tetwright

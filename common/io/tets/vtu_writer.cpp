@@ -53,6 +53,15 @@ struct FaceCells {
   std::vector<std::int64_t> numbers;  ///< of their surfaces
 };
 
+/// Cohesive elements, with numbers that no material has.
+std::vector<CohesivePart> vtu_cohesive(const TetMesh& mesh) {
+  if (mesh.wedges.empty()) return {};
+  std::vector<MeshParts::Material> materials = vtu_materials(mesh);
+  for (const std::int64_t tag : tags_of(mesh.materials))
+    materials.push_back({static_cast<MaterialTag>(tag), tag, "material_" + std::to_string(tag), {}});
+  return cohesive_parts(mesh, materials, printable_names());
+}
+
 }  // namespace
 
 std::string write_vtu(const MeshToWrite& written) {
@@ -61,26 +70,21 @@ std::string write_vtu(const MeshToWrite& written) {
   return out;
 }
 
-MeshParts vtu_parts(const TetMesh& mesh) {
-  MeshParts parts;
-  parts.surfaces = names_of_parts(only_faces(mesh, inner_faces(mesh)), printable_names()).surfaces;
+std::vector<MeshParts::Material> vtu_materials(const TetMesh& mesh) {
+  std::vector<MeshParts::Material> materials;
   UniqueNames names(printable_name);
   std::map<std::string, std::string> written;  // names stay equal if they are equal in the mesh
   for (const auto& [tag, name] : mesh.material_names) {
     const auto [known, added] = written.try_emplace(name);
     if (added) known->second = names.add(name);
-    parts.materials.push_back({tag, tag, known->second, {}});
+    materials.push_back({tag, tag, known->second, {}});
   }
-  return parts;
+  return materials;
 }
 
-/// Cohesive elements, with numbers that no material has.
-static std::vector<CohesivePart> vtu_cohesive(const TetMesh& mesh) {
-  if (mesh.wedges.empty()) return {};
-  std::vector<MeshParts::Material> materials = vtu_parts(mesh).materials;
-  for (const std::int64_t tag : tags_of(mesh.materials))
-    materials.push_back({static_cast<MaterialTag>(tag), tag, "material_" + std::to_string(tag), {}});
-  return cohesive_parts(mesh, materials, printable_names());
+MeshParts vtu_parts(const TetMesh& mesh) {
+  return {vtu_materials(mesh),
+          names_of_parts(only_faces(mesh, inner_faces(mesh)), printable_names()).surfaces};
 }
 
 void write_vtu(const MeshToWrite& written, const ByteSink& sink) {
@@ -116,8 +120,8 @@ void write_vtu(const MeshToWrite& written, const ByteSink& sink) {
   sink("</Points>\n<Cells>\n");
   const std::size_t of_tet = midside ? 10 : 4, of_triangle = midside ? 6 : 3, of_wedge = 6;
   const auto midside_node = [&](Index m) { return static_cast<std::int64_t>(mesh.points.size() + m); };
-  write_vtu_numbers(sink, "Int64", "connectivity", "", of_tet * tets + of_triangle * faces + of_wedge * wedges.size(),
-                    [&](std::size_t i) {
+  write_vtu_numbers(sink, "Int64", "connectivity", "",
+                    of_tet * tets + of_triangle * faces + of_wedge * wedges.size(), [&](std::size_t i) {
                       if (i < of_tet * tets) {
                         const std::size_t t = i / of_tet, k = i % of_tet;
                         return k < 4 ? std::int64_t{mesh.tets[t][k]}
@@ -133,16 +137,16 @@ void write_vtu(const MeshToWrite& written, const ByteSink& sink) {
                                    : midside_node(midside->of_faces[face][k - 3]);
                     });
   write_vtu_numbers(sink, "Int64", "offsets", "", cells, [&](std::size_t i) {
-    return static_cast<std::int64_t>(
-        i < tets           ? of_tet * (i + 1)
-        : i < tets + faces ? of_tet * tets + of_triangle * (i + 1 - tets)
-                           : of_tet * tets + of_triangle * faces + of_wedge * (i + 1 - tets - faces));
+    return static_cast<std::int64_t>(i < tets           ? of_tet * (i + 1)
+                                     : i < tets + faces ? of_tet * tets + of_triangle * (i + 1 - tets)
+                                                        : of_tet * tets + of_triangle * faces +
+                                                              of_wedge * (i + 1 - tets - faces));
   });
   write_vtu_numbers(sink, "UInt8", "types", "", cells, [&](std::size_t i) {
-    return static_cast<std::uint8_t>(
-        i < tets           ? (midside ? element::quadratic_tet.vtk : element::tet.vtk)
-        : i < tets + faces ? (midside ? element::quadratic_triangle.vtk : element::triangle.vtk)
-                           : element::wedge.vtk);
+    return static_cast<std::uint8_t>(i < tets ? (midside ? element::quadratic_tet.vtk : element::tet.vtk)
+                                     : i < tets + faces
+                                         ? (midside ? element::quadratic_triangle.vtk : element::triangle.vtk)
+                                         : element::wedge.vtk);
   });
   sink("</Cells>\n");
   if (!mesh.point_fields.empty()) {

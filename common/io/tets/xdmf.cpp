@@ -92,7 +92,8 @@ class XdmfReader {
       const std::string topology = topology_of(grid);
       if (!chosen && nodes_of(topology) > 0)
         chosen = grid;
-      else if (!cohesive_ && topology == "wedge" && grid.attribute("Name").as_string() == std::string(cohesive_grid))
+      else if (!cohesive_ && topology == "wedge" &&
+               grid.attribute("Name").as_string() == std::string(cohesive_grid))
         cohesive_ = grid;
       else
         ++other_grids;

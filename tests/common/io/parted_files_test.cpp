@@ -48,14 +48,15 @@ struct PartedFormat {
 void PrintTo(const PartedFormat& f, std::ostream* out) { *out << f.name; }
 
 class PartedFiles : public testing::TestWithParam<PartedFormat> {};
-INSTANTIATE_TEST_SUITE_P(
-    Formats, PartedFiles,
-    testing::Values(PartedFormat{"vtu", "m.vtu", "", true}, PartedFormat{"msh22", "m.msh", "msh22", true},
-                    PartedFormat{"msh41", "m.msh", "msh41", true},
-                    PartedFormat{"msh41_binary", "m.msh", "msh41-binary", true},
-                    PartedFormat{"vtk", "m.vtk", "", true}, PartedFormat{"abaqus", "m.inp", "", false},
-                    PartedFormat{"xdmf", "m.xdmf", "", true}),
-    [](const auto& f) { return f.param.name; });
+INSTANTIATE_TEST_SUITE_P(Formats, PartedFiles,
+                         testing::Values(PartedFormat{"vtu", "m.vtu", "", true},
+                                         PartedFormat{"msh22", "m.msh", "msh22", true},
+                                         PartedFormat{"msh41", "m.msh", "msh41", true},
+                                         PartedFormat{"msh41_binary", "m.msh", "msh41-binary", true},
+                                         PartedFormat{"vtk", "m.vtk", "", true},
+                                         PartedFormat{"abaqus", "m.inp", "", false},
+                                         PartedFormat{"xdmf", "m.xdmf", "", true}),
+                         [](const auto& f) { return f.param.name; });
 
 /// Tets as they are in space.
 std::multiset<std::array<std::array<double, 3>, 4>> in_space(const TetMesh& mesh) {
@@ -88,7 +89,8 @@ TEST_P(PartedFiles, ComeBackJoinedAsTheyWere) {
   // .inp lists the tets by material.
   EXPECT_EQ(std::multiset(read.mesh.materials.begin(), read.mesh.materials.end()),
             std::multiset(parted.materials.begin(), parted.materials.end()));
-  for (const auto& [tag, name] : read.mesh.material_names) EXPECT_TRUE(tag == 3 || tag == 8 || tag == 20) << name;
+  for (const auto& [tag, name] : read.mesh.material_names)
+    EXPECT_TRUE(tag == 3 || tag == 8 || tag == 20) << name;
   if (GetParam().fields) {
     ASSERT_EQ(read.mesh.cell_fields.size(), 1u);
     EXPECT_EQ(read.mesh.cell_fields[0].values, whole.cell_fields[0].values);
@@ -120,7 +122,8 @@ TEST_P(PartedFiles, OtherPrismsAreRefused) {
     (void)read_tet_mesh(path);
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("only tets of 4 or 10 points can be read"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("only tets of 4 or 10 points can be read"), std::string::npos)
+        << error.what();
   }
 }
 

@@ -86,8 +86,8 @@ void expect_parted(const TetMesh& before, const TetMesh& after, const Parted& pa
         sets.unite(number.at(f.first), number.at(f.second));
     std::map<Index, Index> copy_of;  // of each set
     for (const Index t : tets) {
-      const auto k = static_cast<std::size_t>(
-          std::find(before.tets[t].begin(), before.tets[t].end(), p) - before.tets[t].begin());
+      const auto k = static_cast<std::size_t>(std::find(before.tets[t].begin(), before.tets[t].end(), p) -
+                                              before.tets[t].begin());
       const Index copy = after.tets[t][k];
       EXPECT_EQ(copy_of.try_emplace(sets.root(number.at(t)), copy).first->second, copy);
     }
@@ -143,14 +143,16 @@ TEST(PartedInterfaces, SidesHaveTheirOwnPointsAndNames) {
     if (known != mesh.patch_groups.end()) ++faces[known->second.name];
     EXPECT_FALSE(t.other);
   }
-  EXPECT_EQ(faces, (std::map<std::string, std::size_t>{{"bone|implant:bone", 2u * side_cells * side_cells},
-                                                       {"bone|implant:implant", 2u * side_cells * side_cells}}));
+  EXPECT_EQ(faces,
+            (std::map<std::string, std::size_t>{{"bone|implant:bone", 2u * side_cells * side_cells},
+                                                {"bone|implant:implant", 2u * side_cells * side_cells}}));
 }
 
 TEST(PartedInterfaces, NothingIsPartedWithoutFaces) {
   const TetMesh before = two_halves();
   TetMesh mesh = before;
-  EXPECT_TRUE(part_interfaces(mesh, nullptr, std::vector{between(1, 3), InterfaceToPart{{}, "crack"}}).empty());
+  EXPECT_TRUE(
+      part_interfaces(mesh, nullptr, std::vector{between(1, 3), InterfaceToPart{{}, "crack"}}).empty());
   EXPECT_EQ(mesh.points, before.points);
   EXPECT_EQ(mesh.interfaces, before.interfaces);
 }

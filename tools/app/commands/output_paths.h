@@ -29,6 +29,9 @@ std::vector<std::string> read_files(const CommandLine& line);
 /// File with the table of bins, beside the mesh; empty: none is written.
 std::string bins_table_of(const CommandLine& line);
 
+/// The table of the pairs of points on parted interfaces, beside the mesh; empty: none.
+std::string pairs_table_of(const CommandLine& line);
+
 /// Path of the file with the results of a batch.
 std::string results_file_of(const CommandLine& line);
 

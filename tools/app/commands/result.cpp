@@ -7,6 +7,7 @@
 #include "tetwright/file_sharing.h"
 #include "tetwright/files.h"
 #include "tetwright/io.h"
+#include "tetwright/parted_interfaces.h"
 #include "tetwright/partition.h"
 #include "tetwright/prepare_steps.h"
 #include "tetwright/tet_parts.h"
@@ -65,6 +66,8 @@ void write_result(Prepared& result, CommandRun& run) {
   if (line.options.bricks.team) line.options.bricks.team->end();
   if (const std::string table = bins_table_of(line); !table.empty())
     files.write(table, table_of_bins(result.mesh, result.bins));
+  if (const std::string table = pairs_table_of(line); !table.empty())
+    files.write(table, table_of_pairs(run.report.parted));
   if (!line.outputs.boundary.empty())
     write_interfaces(result.mesh, line.outputs.boundary, &files, line.outputs.boundary_format);
   write_report(result.mesh, run, files);

@@ -142,6 +142,9 @@ void find_unwritten(const CommandLine& line, const TetMesh& mesh, PrepareReport&
   if (!format.names) note("names of materials", mesh.material_names.size(), no_place);
   if (!format.fields) note("fields", mesh.point_fields.size() + mesh.cell_fields.size(), no_place);
   find_unwritten_bins(line, format, report);
+  if (!format.patch_names)
+    note("names of the sides of parted interfaces", 2 * report.parted.size(), no_place);
+  if (!format.wedges || line.outputs.parts > 0) note("cohesive elements", mesh.wedges.size(), no_place);
   find_name_changes(line, mesh, report);
   find_boundary_changes(line, mesh, report);
 }

@@ -25,8 +25,8 @@ them. Several calls may run at the same time, each with its own `threads`.
 from ._commands import check, improve, mesh, prepare, read, simplify, values
 from ._core import (Error, InputError, InternalError, NothingToMeshError, OutputError, UsageError,
                     version as __version__)
-from ._mesh import CheckResult, Diagnostic, DiagnosticKind, Interfaces, ShortfallWarning, TetMesh, diagnostic_kinds
+from ._mesh import CheckResult, Diagnostic, DiagnosticKind, Interfaces, PartedInterface, ShortfallWarning, TetMesh, diagnostic_kinds
 
-__all__ = ["prepare", "mesh", "simplify", "improve", "values", "check", "read", "TetMesh", "Interfaces", "CheckResult", "Diagnostic",
+__all__ = ["prepare", "mesh", "simplify", "improve", "values", "check", "read", "TetMesh", "Interfaces", "PartedInterface", "CheckResult", "Diagnostic",
            "DiagnosticKind", "diagnostic_kinds", "ShortfallWarning", "Error", "UsageError", "InputError", "NothingToMeshError", "OutputError",
            "InternalError", "__version__"]

@@ -44,6 +44,14 @@ def diagnostic_kinds() -> dict[str, DiagnosticKind]:
     return {name: DiagnosticKind(*kind) for name, *kind in _core.diagnostic_kinds()}
 
 
+class PartedInterface(NamedTuple):
+    """An interface whose sides have points of their own, with split_interface= or cohesive=."""
+    name: str  # both materials, "bone|implant", or the name of the sheet or group of faces
+    sides: tuple[str, str]  # names of the faces on both sides in Interfaces.group_names
+    pairs: np.ndarray  # (n, 2) int64: points of the first side with those of the second at the same position
+    cohesive: bool  # TetMesh.wedges join the sides
+
+
 class Interfaces:
     """The faces between two materials, and between a material and the outside, and those of sheets, which have
     the same material on both sides. Arrays are read-only."""
@@ -138,6 +146,17 @@ class TetMesh:
     def interfaces(self) -> Interfaces:
         """The faces between materials and on the boundary."""
         return Interfaces(self._core)
+
+    @property
+    def wedges(self) -> np.ndarray:
+        """(k, 6) uint32: cohesive elements without volume between the sides of parted interfaces. Corners 0, 1, 2 are
+        on the first side, their normal points to the second; corner i + 3 has the position of corner i."""
+        return self._core.wedges
+
+    @property
+    def parted(self) -> list[PartedInterface]:
+        """Interfaces that the command parted; empty for a mesh that was only read."""
+        return [PartedInterface(*parted) for parted in self._core.parted()]
 
     @property
     def point_fields(self) -> dict[str, np.ndarray]:
