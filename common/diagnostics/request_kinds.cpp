@@ -164,6 +164,15 @@ constexpr std::array request_table = std::to_array<DiagnosticKind>({
      .cause =
          "The two materials do not touch, or no sheet or group of faces between materials has this name.",
      .remedy = "One of the names in the message. Names are those in the result."},
+    {.code = selection_empty,
+     .name = "selection-empty",
+     .severity = Severity::shortfall,
+     .title = "selection without faces",
+     .message = "--select NAME: no face; the nearest face misses 'RULE' by D at X Y Z",
+     .cause = "No boundary face fulfils all rules of the selection.",
+     .remedy = "Correct the rule by what the message says, or widen its tolerance; the report page prints "
+               "rules that "
+               "select a patch."},
     {.code = notes_not_allowed,
      .name = "notes-not-allowed",
      .severity = Severity::shortfall,
@@ -209,6 +218,15 @@ constexpr std::array request_table = std::to_array<DiagnosticKind>({
          "The border of what parts keeps its points, since the tets around them are connected elsewhere. "
          "There the interface is one triangle wide.",
      .remedy = "A higher `--target-tets`, or part the neighbouring interfaces, too."},
+    {.code = faces_regrouped,
+     .name = "faces-regrouped",
+     .severity = Severity::note,
+     .title = "faces moved to a selection",
+     .message = "N faces of the group 'NAME' (now in 'NAME')",
+     .cause =
+         "A face belongs to one group: a `--select` takes faces from the groups of the input, and an earlier "
+         "`--select` keeps its own.",
+     .remedy = "None needed; rules joined by `and` that exclude the faces keep them in their group."},
     {.code = gap_closed,
      .name = "gap-closed",
      .severity = Severity::note,

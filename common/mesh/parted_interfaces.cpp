@@ -2,11 +2,11 @@
 #include "tetwright/parted_interfaces.h"
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <set>
 
 #include "common/mesh/disjoint_sets.h"
+#include "common/mesh/new_patches.h"
 #include "tetwright/error.h"
 #include "tetwright/mesh_quality.h"
 #include "tetwright/sheets.h"
@@ -73,29 +73,6 @@ void sort_interfaces(std::vector<InterfaceTriangle>& interfaces) {
   });
   append_sheets(interfaces, std::move(sheets));
 }
-
-/// Gives out numbers of patches that a pair of materials does not have yet.
-class NewPatches {
- public:
-  explicit NewPatches(const TetMesh& mesh) {
-    for (const InterfaceTriangle& t : mesh.interfaces) use(t.pair(), t.patch);
-    for (const auto& [patch, region] : mesh.patch_groups) use(patch.first, patch.second);
-  }
-  std::uint16_t add(const MaterialPair& pair) {
-    std::uint32_t& next = next_.try_emplace(pair, 0).first->second;
-    if (next > std::numeric_limits<std::uint16_t>::max())
-      throw OutputError(
-          "the boundary of a material would have more than 65,536 patches; part fewer interfaces");
-    return static_cast<std::uint16_t>(next++);
-  }
-
- private:
-  void use(const MaterialPair& pair, std::uint16_t patch) {
-    std::uint32_t& next = next_.try_emplace(pair, 0).first->second;
-    next = std::max(next, std::uint32_t{patch} + 1);
-  }
-  std::map<MaterialPair, std::uint32_t> next_;
-};
 
 class Parter {
  public:

@@ -43,22 +43,69 @@ Vec3 keep_volumes(const Star& star, Vec3 step) {
   return step;
 }
 
+/// Two unit vectors across a unit normal.
+std::array<Vec3, 3> directions_in_plane(const Vec3& normal) {
+  int axis;
+  normal.cwiseAbs().minCoeff(&axis);
+  const Vec3 u = normal.cross(Vec3::Unit(axis)).normalized();
+  return {u, normal.cross(u), Vec3::Zero()};
+}
+
+/// The planes of the boundary triangles at a point.
+struct BoundaryPlanes {
+  static constexpr std::size_t max_count = 3;
+  std::array<Vec3, max_count> normals;  ///< unit vectors
+  std::size_t count = 0;                ///< 0: no boundary, or more than max_count planes
+};
+
+/// Finds the planes of which the boundary at the centre consists: one in a flat face, two on a straight edge,
+/// three in a corner. A curved surface has as many as triangles.
+BoundaryPlanes planes_of_boundary(const Star& star) {
+  BoundaryPlanes planes;
+  for (const Star::InterfaceTriangle& s : star.interface_triangles) {
+    if (s.inside != outside_id && s.across != outside_id) continue;
+    const Vec3 p = star.positions[s.first] - star.centre_position,
+               q = star.positions[s.second] - star.centre_position;
+    const Vec3 normal = p.cross(q);
+    if (!(normal.squaredNorm() > 0)) continue;
+    const bool known = std::any_of(
+        planes.normals.begin(), planes.normals.begin() + static_cast<std::ptrdiff_t>(planes.count),
+        [&](const Vec3& n) { return std::max(std::fabs(n.dot(p)), std::fabs(n.dot(q))) <= tolerance::flat_patch; });
+    if (known) continue;
+    if (planes.count == BoundaryPlanes::max_count) return {};
+    planes.normals[planes.count++] = normal.normalized();
+  }
+  return planes;
+}
+
+/// Unit vectors along all planes.
+/// \param count their number; 0 where three planes meet in a point
+std::array<Vec3, 3> directions_in_planes(const BoundaryPlanes& planes, int& count) {
+  if (planes.count == 1) {
+    count = 2;
+    return directions_in_plane(planes.normals[0]);
+  }
+  const Vec3 along = planes.normals[0].cross(planes.normals[1]).normalized();
+  count = planes.count == 2 ? 1 : 0;
+  return {along, Vec3::Zero(), Vec3::Zero()};
+}
+
 /// Directions in which a point of the given dimension may move without leaving its surface or curve.
+/// \param leave_surface it may leave them, but not flat faces of the boundary and straight edges between them
 /// \param follows whether an edge, by link point, belongs to the curve
 template <class Follows>
 std::array<Vec3, 3> free_directions(const Star& star, int dimension, bool leave_surface,
                                     const Follows& follows, int& count) {
+  if (leave_surface)
+    if (const BoundaryPlanes planes = planes_of_boundary(star); planes.count > 0)
+      return directions_in_planes(planes, count);
   if (dimension == 3 || leave_surface) {
     count = 3;
     return {Vec3::UnitX(), Vec3::UnitY(), Vec3::UnitZ()};
   }
   if (dimension == 2) {
     count = 2;
-    const Vec3 normal = star.surface_normal().normalized();
-    int axis;
-    normal.cwiseAbs().minCoeff(&axis);
-    const Vec3 u = normal.cross(Vec3::Unit(axis)).normalized();
-    return {u, normal.cross(u), Vec3::Zero()};
+    return directions_in_plane(star.surface_normal().normalized());
   }
   count = 1;
   Vec3 along = Vec3::Zero();
@@ -118,6 +165,7 @@ class PlacementSearch {
       return on_crease_ ? ws_.kinds[p].on_crease() : star_.edge_dimension(p) == 1;
     };
     directions_ = free_directions(star_, dimension_, leave_surface_, follows, direction_count_);
+    if (direction_count_ == 0) return false;
     shortest_ = shortest_edge(star_);
     if (!choose_bounds()) return false;
     start();

@@ -227,6 +227,32 @@ class PageTest(unittest.TestCase):
         self.browser.settle()
         self.assertNotAlmostEqual(self.browser.run(look)[1], turned[1], places=2)
 
+    def test_a_click_prints_the_option_that_selects_the_patch(self):
+        self.open(self.pages.layers())
+        box = self.browser.run("(r => [r.x, r.y, r.width, r.height])"
+                               "(document.getElementById('canvas').getBoundingClientRect())")
+
+        def click(right=0.5, down=0.5, drag=0):
+            x, y = box[0] + right * box[2], box[1] + down * box[3]
+            for kind, at in (("mousePressed", x), ("mouseMoved", x + drag), ("mouseReleased", x + drag)):
+                self.browser.call("Input.dispatchMouseEvent", type=kind, x=at, y=y, button="left", buttons=1, clickCount=1)
+            self.browser.settle()
+            return self.browser.run("(o => o.hidden ? '' : o.textContent)(document.getElementById('selection'))")
+        self.assertEqual(click(0.01, 0.01), "")
+        option = click()
+        self.assertRegex(option, r"^--select NAME=patch-at:[-0-9.e]+,[-0-9.e]+,[-0-9.e]+$")
+        stats = self.pages.path("selected.json")
+        tetwright("improve", self.pages.path("layers.vtu"), "-o", self.pages.path("selected.msh"), "--stats", stats,
+                  *option.split())
+        with open(stats, encoding="utf-8") as file:
+            selected = json.load(file)["selections"]
+        self.assertEqual([s["name"] for s in selected], ["NAME"])
+        self.assertGreater(selected[0]["faces"], 0)
+        self.assertEqual(click(0.01, 0.01), "")
+        self.assertEqual(click(drag=40), "")
+        self.open(self.pages.layers(), "cut=z,0.5&look=-40,80,2")
+        self.assertIn("inside the mesh", click())
+
     def test_without_webgl_the_figures_are_there(self):
         with browser.Browser(webgl=False) as tab:
             self.open(self.pages.simplified(), tab=tab)

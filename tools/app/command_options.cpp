@@ -305,6 +305,7 @@ void add_prepare(CLI::App& app, CommandLine& c) {
   add_labels(app, c);
   add_images(app, c);
   add_values_options(app, c);
+  add_selections(app, c);
   add_interface_options(app, c);
   add_bricks(app, c);
   add_stats(app, c);
@@ -323,6 +324,7 @@ void add_mesh(CLI::App& app, CommandLine& c) {
   add_labels(app, c);
   add_images(app, c);
   add_values_options(app, c);
+  add_selections(app, c);
   add_interface_options(app, c);
   add_stats(app, c);
   add_common(app, c);
@@ -338,6 +340,7 @@ void add_simplify(CLI::App& app, CommandLine& c) {
   add_fix_boundary(app, c);
   add_feature_angle(app, c.options.feature_angle);
   add_values_options(app, c);
+  add_selections(app, c);
   add_interface_options(app, c);
   add_strict(app, c);
   add_material_field(app, c);
@@ -362,6 +365,7 @@ void add_improve(CLI::App& app, CommandLine& c) {
   add_fix_boundary(app, c);
   add_feature_angle(app, c.options.feature_angle);
   add_values_options(app, c);
+  add_selections(app, c);
   add_interface_options(app, c);
   add_strict(app, c);
   add_material_field(app, c);

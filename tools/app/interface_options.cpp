@@ -7,6 +7,7 @@
 
 #include "tetwright/error.h"
 #include "tetwright/io.h"
+#include "tools/app/option_values.h"
 
 namespace tetwright {
 
@@ -25,6 +26,26 @@ void add_requests(CLI::App& app, CommandLine& c, const char* option, bool cohesi
 }
 
 }  // namespace
+
+void add_selections(CLI::App& app, CommandLine& c) {
+  app.add_option_function<std::vector<std::string>>(
+         "--select",
+         [&c](const std::vector<std::string>& all) {
+           for (const std::string& text : all) {
+             const NamedValue named = split_named(text, "--select", "RULE");
+             c.options.selections.push_back(parse_face_selection(named.name, named.value));
+           }
+         },
+         "A named set of boundary faces, with a set of their nodes in formats of solvers. Rules, joined by "
+         "'and': "
+         "plane:z=min,0.5% (corners within 0.5 % of the diagonal; or plane:A,B,C=D,T), box:X,Y,Z,X,Y,Z, "
+         "sphere:X,Y,Z,R, cylinder:X,Y,Z,X,Y,Z,R, normal:X,Y,Z,DEGREES, patch-at:X,Y,Z (the nearest face, "
+         "and all "
+         "up to creases); repeatable")
+      ->expected(1)
+      ->type_name("NAME=RULE")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
 
 void add_interface_options(CLI::App& app, CommandLine& c) {
   add_requests(

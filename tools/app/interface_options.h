@@ -7,6 +7,9 @@
 
 namespace tetwright {
 
+/// Adds --select.
+void add_selections(CLI::App& app, CommandLine& c);
+
 /// Adds --split-interface and --cohesive.
 void add_interface_options(CLI::App& app, CommandLine& c);
 

@@ -229,6 +229,8 @@ void print_report(const CommandLine& line, const PrepareReport& run, const Parti
   if (!run.patches.empty()) std::printf("%s\n", patches_line(run.patches).c_str());
   if (run.caps) std::printf("%s\n", caps_line(*run.caps).c_str());
   print_contacts(run.contacts);
+  for (const SelectedFaces& s : run.selected)
+    std::printf("%s: %zu faces selected, area %.6g\n", s.name.c_str(), s.faces, s.area);
   for (const PartedInterface& p : run.parted) std::printf("%s\n", parted_line(p).c_str());
   if (run.result)
     for (const SheetStatistics& s : run.result->sheets) std::printf("%s\n", sheet_line(s).c_str());

@@ -302,6 +302,21 @@ def heater(studio):
     studio.pair("heater", page, ("up=y&look=28,24,2.4", parts), ("up=y&cut=z,0.5&look=28,24,1.9", ()))
 
 
+def contact(studio):
+    """A punch on its base: both sides of the interface have points of their own."""
+    inputs = {}
+    for name, low, high in (("base", (0, 0, 0), (2, 1, 1)), ("punch", (0.5, 0.2, 1), (1.5, 0.8, 2))):
+        inputs[name] = name + ".obj"
+        corners = [tuple((low, high)[i >> k & 1][k] for k in range(3)) for i in range(8)]
+        write_obj(studio.path(inputs[name]), corners,
+                  [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)])
+    page = studio.assembly("contact", inputs, ["--split-interface", "base,punch"], 1500)
+    of_mesh = [[t for t in faces_of(studio.path("contact.mesh"), lambda sides, tag=str(tag): sides == [tag])] for tag in (1, 2)]
+    parts = [layer_of(moved(triangles, by), colour)
+             for triangles, by, colour in zip(of_mesh, ((0, 0, 0), (0, 0, 0.5)), MATERIAL_COLOURS)]
+    studio.pair("contact", page, ("look=-62,24,2.6", parts), ("cut=y,0.5&look=-62,24,2.3", ()))
+
+
 def rock(studio):
     """Five layers that share their surfaces."""
     inputs, options = studio.case("layers_five_files")
@@ -350,7 +365,7 @@ def horizons(studio):
     studio.pair("horizons", page, ("up=y&look=28,22,2.7", surfaces), ("up=y&cut=z,0.5&look=28,22,2.4", ()))
 
 
-PICTURES_BY_NAME = {make.__name__: make for make in (scan, organs, implant, part, layers, report, heater, rock, vessel, fan, horizons)}
+PICTURES_BY_NAME = {make.__name__: make for make in (scan, organs, implant, part, layers, report, heater, contact, rock, vessel, fan, horizons)}
 
 
 def main():

@@ -13,6 +13,7 @@
 #include "tetwright/simplify.h"
 #include "tools/prepare/input_changes.h"
 #include "tools/prepare/interface_parting.h"
+#include "tools/prepare/selected_faces.h"
 #include "tools/prepare/value_input.h"
 #include "tools/prepare/value_rules.h"
 
@@ -159,7 +160,10 @@ Prepared carry_out(std::vector<Input> inputs, PrepareRun& run) {
   if (run.caps)
     run.report.caps = run.caps->name(result.mesh, run.task == Task::mesh ? CapNaming::sharp : CapNaming::all);
   take_values(std::move(images), result, run);
-  if (run.task != Task::values) part_result(result, joined, run);
+  if (run.task != Task::values) {
+    select_faces_of(result, run);
+    part_result(result, joined, run);
+  }
   result.midside = std::move(run.midside);
   result.scratch = std::move(run.scratch);
   run.progress.throw_if_stopped();

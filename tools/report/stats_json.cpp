@@ -270,6 +270,13 @@ nlohmann::json patches_json(const std::vector<PatchComparison>& all) {
   return j;
 }
 
+nlohmann::json selections_json(const std::vector<SelectedFaces>& selected) {
+  nlohmann::json all = nlohmann::json::array();
+  for (const SelectedFaces& s : selected)
+    all.push_back({{"name", s.name}, {"faces", s.faces}, {"area", s.area}});
+  return all;
+}
+
 nlohmann::json parted_json(const std::vector<PartedInterface>& parted) {
   nlohmann::json all = nlohmann::json::array();
   for (const PartedInterface& p : parted)
@@ -439,6 +446,7 @@ std::string stats_json(const CommandRun& ended) {
                          {"on_surface", run.second_order->on_surface},
                          {"part_way", run.second_order->part_way},
                          {"straight", run.second_order->straight}};
+  if (!run.selected.empty()) j["selections"] = selections_json(run.selected);
   if (!run.parted.empty()) j["parted"] = parted_json(run.parted);
   if (!run.values.empty()) j["values"] = values_json(run.values);
   if (!run.bins.empty()) j["bins"] = bins_json(run.bins);

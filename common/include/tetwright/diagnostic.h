@@ -41,6 +41,7 @@ enum class DiagnosticCode : std::uint8_t {
   time_limit_reached,
   cells_enlarged,
   interface_not_found,
+  selection_empty,
   notes_not_allowed,
   // The result.
   angles_below_bound,
@@ -48,6 +49,7 @@ enum class DiagnosticCode : std::uint8_t {
   volume_changed,
   parts_touch,
   faces_not_parted,
+  faces_regrouped,
   gap_closed,
   wall_left_out,
   crease_patches_dropped,

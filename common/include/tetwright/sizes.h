@@ -19,6 +19,19 @@
 
 namespace tetwright {
 
+/// A length, absolute or relative to the size of the input.
+struct Length {
+  double value = 0;  ///< above 0; input units, or percent of the diagonal of the inputs' bounding box
+  bool percent = false;
+
+  double in_input_units(double diagonal) const { return percent ? value / 100 * diagonal : value; }
+};
+
+/// Length in input units; 0 for std::nullopt.
+inline double in_input_units(const std::optional<Length>& length, double diagonal) {
+  return length ? length->in_input_units(diagonal) : 0;
+}
+
 /// Names of fields known to be edge lengths; the first one that a file has is used.
 inline constexpr std::array<std::string_view, 4> size_names{"size", "sizing", "edge_length", "h"};
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "simplify/operations/smoothing.h"
 
+#include "common/random.h"
 #include "tests/simplify/workbench.h"
 
 namespace tetwright::smoothing_test {
@@ -93,6 +94,46 @@ TEST(Smoothing, ACornerMayLeaveItsPlaceALittleWhereThatIsAsked) {
   EXPECT_GT(moved, 0.1);
   EXPECT_LE(moved, 0.2 + 1e-9);  // from its first position, however often it moves
   w.expect_sound();
+}
+
+// The boundary of grains is flat; only inside it may their junctions leave the curves.
+TEST(Smoothing, PointsThatMayLeaveTheirSurfaceStayOnFlatFacesAndStraightEdges) {
+  TetMesh mesh = grid_mesh({4, 4, 4}, [](int x, int y, int z) { return Tag(1 + (x * 7 + y * 3 + z * 5) % 4); });
+  Random random(5);
+  for (Vec3& p : mesh.points)
+    for (int axis = 0; axis < 3; ++axis)
+      if (p[axis] > 0 && p[axis] < 4) p[axis] += 0.35 * (random.uniform() - 0.5);
+  // A turned cube: its faces are not those of the lattice of points.
+  const Vec3 axes[3] = {Vec3(2, 1, 2) / 3, Vec3(-2, 2, 1) / 3, Vec3(-1, -2, 2) / 3};
+  for (const bool turned : {false, true}) {
+    TetMesh of_mesh = mesh;
+    if (turned)
+      for (Vec3& p : of_mesh.points) p = p.x() * axes[0] + p.y() * axes[1] + p.z() * axes[2];
+    Workbench w(of_mesh);
+    const SurfaceProjection projection(w.mesh, nullptr);
+    w.rules.surface.projection = &projection;
+    w.rules.surface.leave_surface = true;
+    w.rules.surface.max_distance = 0.2 * w.mesh.space().scale();
+    std::size_t moved_on_boundary = 0, moved_inside = 0;
+    const auto along = [&](const Vec3& p, int axis) { return turned ? axes[axis].dot(p) : p[axis]; };
+    for (Index p = 0; p < mesh.points.size(); ++p) {
+      const Vec3 was = w.mesh.space().to_input(w.mesh.position(p));
+      w.star(p);
+      if (w.carry_out(optimise(*w.ws, w.rules)) != Outcome::done) continue;
+      const Vec3 now = w.mesh.space().to_input(w.mesh.position(p));
+      bool on_boundary = false;
+      for (int axis = 0; axis < 3; ++axis)
+        for (const double side : {0.0, 4.0})
+          if (std::fabs(along(was, axis) - side) < 1e-7) {
+            on_boundary = true;
+            EXPECT_NEAR(along(now, axis), side, 1e-7);
+          }
+      ++(on_boundary ? moved_on_boundary : moved_inside);
+    }
+    EXPECT_GT(moved_on_boundary, 30u);
+    EXPECT_GT(moved_inside, 15u);
+    w.expect_sound();
+  }
 }
 
 TEST(Smoothing, AJunctionPointStaysOnAStraightCurve) {

@@ -139,6 +139,36 @@ TEST_F(PartedBoxes, WhatCannotBeHeldIsRefused) {
   expect_refused("improve " + path("m.vtu") + " --order 2 -o " + path("n.vtu"), 2, {"has cohesive elements"});
 }
 
+TEST_F(PartedBoxes, SelectionsAreGroupsInFiles) {
+  ASSERT_EQ(run(boxes("--select \"top=plane:z=max and normal:0,0,1,5\" --select seat=patch-at:1,1,-1 "
+                      "--split-interface bone,implant",
+                      "m.inp"))
+                .status,
+            0);
+  const std::string inp = contents(path("m.inp"));
+  for (const char* line : {"*SURFACE, NAME=top, TYPE=ELEMENT\n", "*NSET, NSET=top\n", "*NSET, NSET=seat\n"})
+    EXPECT_NE(inp.find(line), std::string::npos) << line;
+  const auto selections = nlohmann::json::parse(contents(path("stats.json"))).at("selections");
+  EXPECT_NEAR(selections.at(0).at("area").get<double>(), 6, 1e-9);
+  EXPECT_NEAR(selections.at(1).at("area").get<double>(), 4, 1e-9);
+  const std::set<std::string> names = groups(path("m.inp"));
+  EXPECT_TRUE(names.contains("top") && names.contains("seat") && names.contains("bone|implant:bone"));
+  // Of a mesh, too; what selects nothing is written nevertheless.
+  const Answer a =
+      run("simplify " + path("m.inp") + " --target-tets 400 --select none=plane:z=9 -o " + path("n.msh"));
+  EXPECT_EQ(a.status, 1) << a.err;
+  EXPECT_NE(a.err.find("--select none: no face; the nearest face misses \"plane:z=9\" by 6.99"),
+            std::string::npos)
+      << a.err;
+  EXPECT_TRUE(groups(path("n.msh")).contains("seat"));
+  const Answer b = run("improve " + path("n.msh") + " --select top2=plane:z=max -o " + path("o.vtu"));
+  EXPECT_EQ(b.status, 0) << b.err;
+  EXPECT_NE(b.err.find("faces of the group \"top\" (now in \"top2\")"), std::string::npos) << b.err;
+  EXPECT_NE(b.err.find("named patches (not written; .vtu cannot hold them"), std::string::npos) << b.err;
+  expect_refused(boxes("--select top=plane:z", "q.msh"), 2, {"--select top: \"plane:z\" has no ="});
+  expect_refused(boxes("--select plane:z=1", "q.msh"), 2, {"--select"});
+}
+
 // The table may not overwrite another file of the call.
 TEST_F(PartedBoxes, TheTableHasAFileOfItsOwn) {
   expect_refused(boxes("--split-interface all --log-file " + path("m_pairs.csv"), "m.vtu"), 2,

@@ -62,9 +62,10 @@ std::size_t named_caps(const PrepareReport& report) {
 }
 
 std::size_t named_patches(const PrepareReport& report) {
-  return named_caps(report) + static_cast<std::size_t>(std::count_if(
-                                  report.patches.begin(), report.patches.end(),
-                                  [](const PatchComparison& p) { return !p.group.name.empty(); }));
+  return named_caps(report) + report.selected.size() +
+         static_cast<std::size_t>(
+             std::count_if(report.patches.begin(), report.patches.end(),
+                           [](const PatchComparison& p) { return !p.group.name.empty(); }));
 }
 
 /// Number of patches that are sheets, which every format of tet meshes can hold.
@@ -94,9 +95,12 @@ void find_unwritten_patches(const CommandLine& line, const TetFormatInfo& format
       (boundary_lacks ? "nor can .off, but .vtp .ply .stl .obj can" : "but --boundary FILE can") +
       ", and .msh";
   if (line.outputs.no_boundary)
-    note("named patches", report.patches.size() + named_caps(report), ", as --no-boundary asks");
+    note("named patches", report.patches.size() + named_caps(report) + report.selected.size(),
+         ", as --no-boundary asks");
   else if (!format.surfaces)
-    note("named patches", report.patches.size() + named_caps(report) - sheet_patches(report, mesh), no_place);
+    note("named patches",
+         report.patches.size() + named_caps(report) + report.selected.size() - sheet_patches(report, mesh),
+         no_place);
   else if (!format.patch_names)
     note("names of patches", named_patches(report), no_place);
 }

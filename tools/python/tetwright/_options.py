@@ -86,7 +86,13 @@ def _texts(key: str, kind: str, value: Any, inputs: Inputs) -> Iterable[bytes]:
         return [b",".join(_number(key, item) for item in (value if np.ndim(value) == 1 else [value]))]
     if key == "layer" and not isinstance(value, (str, list)):
         raise _core.UsageError(f"layer is a {type(value).__name__}; give a dict from names to thicknesses")
-    if key in ("layer", "region", "cap", "surface") and isinstance(value, list):
+    if key == "select" and isinstance(value, dict):
+        return [_name(key, str(name)) + b"=" + plain_text(rule, key) for name, rule in value.items()]
+    if key in ("split_interface", "cohesive") and isinstance(value, tuple):
+        return [b",".join(plain_text(name, key) for name in value)]
+    if key in ("split_interface", "cohesive") and isinstance(value, list):
+        return [text for item in value for text in _texts(key, kind, item, inputs)]
+    if key in ("layer", "region", "cap", "surface", "select") and isinstance(value, list):
         return [_text(key, "FILE" if key == "surface" else kind, item) for item in value]
     return [_text(key, kind, value)]
 

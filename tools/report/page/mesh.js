@@ -92,7 +92,7 @@ function centre_sums(indices, corners, points, axis) {
 
 /**
  * The visible part of the mesh. A whole tet is shown if its material is on and its centre is behind the cut. Calls
- * `emit(a, b, c, tet, on_interface)` for each face to draw, corners counter-clockwise. For a triangle of the skin of
+ * `emit(a, b, c, tet, on_interface, on_boundary)` for each face to draw, corners counter-clockwise. For a triangle of the skin of
  * a mesh that the page holds only partly, tet is -1 - material.
  */
 class VisibleMesh {
@@ -123,7 +123,7 @@ class VisibleMesh {
       if (sees_one === 1 ? sees_two === 1 : sees_two !== 1) continue;
       const from = sees_one === 1 ? one : two, at = from & ~3, local = FACES[from & 3];
       const border = about.whole && (two === NONE || tags[one >> 2] !== tags[two >> 2]);
-      emit(tets[at + local[0]], tets[at + local[1]], tets[at + local[2]], from >> 2, border);
+      emit(tets[at + local[0]], tets[at + local[1]], tets[at + local[2]], from >> 2, border, about.whole && two === NONE);
     }
     if (!about.whole) this.each_skin_triangle(state, emit);
   }
@@ -151,9 +151,9 @@ class VisibleMesh {
       if (behind === before) continue;
       const a = triangles[3 * t], b = triangles[3 * t + 1], c = triangles[3 * t + 2];
       if (behind)
-        emit(a, b, c, -1 - sides[2 * t], true);
+        emit(a, b, c, -1 - sides[2 * t], true, sides[2 * t + 1] >= about.materials.length);
       else
-        emit(a, c, b, -1 - sides[2 * t + 1], true);
+        emit(a, c, b, -1 - sides[2 * t + 1], true, sides[2 * t] >= about.materials.length);
     }
   }
 }

@@ -107,7 +107,8 @@ class Page {
 
   update() {
     let size = 1 << 12, corners = new Uint32Array(3 * size), colours = new Uint8Array(9 * size), count = 0;
-    this.visible.each_face(this.state, (a, b, c, tet, on_interface) => {
+    const on_boundary = [];
+    this.visible.each_face(this.state, (a, b, c, tet, on_interface, is_boundary) => {
       if (count === size) {
         size *= 2;
         const more_corners = new Uint32Array(3 * size), more_colours = new Uint8Array(9 * size);
@@ -117,9 +118,12 @@ class Page {
         colours = more_colours;
       }
       corners.set([a, b, c], 3 * count);
+      on_boundary.push(is_boundary);
       this.paint(colours, 9 * count++, [a, b, c], tet, on_interface);
     });
     this.drawn = count;
+    this.corners = corners;
+    this.on_boundary = on_boundary;
     this.view.set_triangles(corners.subarray(0, 3 * count), colours.slice(0, 9 * count));
     byId("count").textContent = count.toLocaleString("en") + " triangles drawn.";
   }
@@ -137,7 +141,7 @@ class Page {
     byId("reset").addEventListener("click", () => this.view.show_all());
     byId("controls").hidden = false;
     byId("controls").addEventListener("submit", event => event.preventDefault());
-    steer(this.view, byId("view"));
+    steer(this.view, byId("view"), (x, y) => this.print_selection(x, y));
     new ResizeObserver(() => this.view.redraw()).observe(byId("view"));
     const background = () => this.view.set_background(getComputedStyle(byId("view")).backgroundColor);
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", background);
@@ -152,6 +156,24 @@ class Page {
       this.set_colour();
       this.update();
     });
+  }
+
+  /** Prints the option that selects the patch of the face at a pixel. */
+  print_selection(x, y) {
+    const face = this.view.pick(x, y), output = byId("selection");
+    output.hidden = face < 0;
+    if (face < 0) return;
+    if (!this.on_boundary[face]) {
+      output.textContent = "This face is inside the mesh; --select is for faces of its boundary.";
+      return;
+    }
+    const {about, points} = this.mesh, digits = 7;  // more than the 16 bits of points need
+    const centre = [0, 1, 2].map(axis => {
+      let sum = 0;
+      for (let k = 0; k < 3; ++k) sum += points[3 * this.corners[3 * face + k] + axis];
+      return Number((about.origin[axis] + about.step * sum / 3).toPrecision(digits));
+    });
+    output.textContent = `--select NAME=patch-at:${centre.join(",")}`;
   }
 
   make_materials() {

@@ -158,6 +158,30 @@ class View {
     return [(p.x + 1) / 2 * this.canvas.clientWidth, (1 - p.y) / 2 * this.canvas.clientHeight];
   }
 
+  /** Index of the nearest drawn triangle at a pixel of the canvas; -1 where there is none. */
+  pick(x, y) {
+    const at = depth => new THREE.Vector3(2 * x / this.canvas.clientWidth - 1, 1 - 2 * y / this.canvas.clientHeight, depth)
+      .unproject(this.camera);
+    const from = at(-1), along = at(1).sub(from), position = this.object.geometry.getAttribute("position").array;
+    const a = new THREE.Vector3(), ab = new THREE.Vector3(), ac = new THREE.Vector3();
+    let nearest = Infinity, found = -1;
+    for (let i = 0; i < position.length; i += 9) {
+      a.fromArray(position, i);
+      ab.fromArray(position, i + 3).sub(a);
+      ac.fromArray(position, i + 6).sub(a);
+      // Moeller & Trumbore 1997.
+      const across = along.clone().cross(ac), volume = ab.dot(across);
+      if (volume === 0) continue;
+      const to = from.clone().sub(a), u = to.dot(across) / volume;
+      if (u < 0 || u > 1) continue;
+      const beside = to.cross(ab), v = along.dot(beside) / volume, distance = ac.dot(beside) / volume;
+      if (v < 0 || u + v > 1 || distance < 0 || distance >= nearest) continue;
+      nearest = distance;
+      found = i / 9;
+    }
+    return found;
+  }
+
   turn(right, up) {
     const steepest = Math.PI / 2 - 0.001;
     this.look.azimuth -= right;
@@ -236,9 +260,10 @@ function fill_normal(position, normal, i) {
   }
 }
 
-/** Mouse, fingers, wheel and keys. */
-function steer(view, element) {
-  const pointers = new Map();
+/** Mouse, fingers, wheel and keys. `click` is called with the pixel of a click that is no drag. */
+function steer(view, element, click) {
+  const pointers = new Map(), most_pixels = 3;
+  let dragged = 0;
   const spread = () => {
     const [a, b] = [...pointers.values()];
     return Math.hypot(a.x - b.x, a.y - b.y);
@@ -248,12 +273,14 @@ function steer(view, element) {
     canvas.setPointerCapture(event.pointerId);
     pointers.set(event.pointerId, {x: event.clientX, y: event.clientY});
     view.flight = null;
+    dragged = pointers.size > 1 || event.button !== 0 || event.shiftKey ? Infinity : 0;
   });
   canvas.addEventListener("pointermove", event => {
     const last = pointers.get(event.pointerId);
     if (!last) return;
     const right = event.clientX - last.x, down = event.clientY - last.y;
     const before = pointers.size === 2 ? spread() : 0;
+    dragged += Math.abs(right) + Math.abs(down);
     pointers.set(event.pointerId, {x: event.clientX, y: event.clientY});
     if (pointers.size === 2) {
       view.zoom(before / Math.max(1, spread()));
@@ -263,6 +290,11 @@ function steer(view, element) {
     } else {
       view.turn(right * radians_per_pixel, down * radians_per_pixel);
     }
+  });
+  canvas.addEventListener("pointerup", event => {
+    if (!pointers.has(event.pointerId) || dragged > most_pixels) return;
+    const {left, top} = canvas.getBoundingClientRect();
+    click(event.clientX - left, event.clientY - top);
   });
   for (const kind of ["pointerup", "pointercancel"])
     canvas.addEventListener(kind, event => pointers.delete(event.pointerId));

@@ -14,6 +14,7 @@
 
 #include "tetwright/compare.h"
 #include "tetwright/diagnostic.h"
+#include "tetwright/face_selection.h"
 #include "tetwright/image_input.h"
 #include "tetwright/image_volume.h"
 #include "tetwright/io.h"
@@ -213,6 +214,7 @@ struct PrepareReport {
   std::optional<CreaseComparison> crease_comparison;
   std::optional<CurvingReport> second_order;  ///< with --order 2
   std::vector<PatchComparison> patches;       ///< named or numbered patches of the input
+  std::vector<SelectedFaces> selected;        ///< as PrepareOptions::selections requests them
   std::vector<PartedInterface> parted;        ///< interfaces of the result with points for each side
   std::optional<CapReport> caps;              ///< faces that close holes, if the surfaces have any
   std::size_t input_limited = 0;  ///< tets below the bound because of the input, see input_limited_tets()

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "tetwright/face_selection.h"
 #include "tetwright/image_input.h"
 #include "tetwright/io.h"
 #include "tetwright/mesh_quality.h"
@@ -22,19 +23,6 @@
 #include "tetwright/value_options.h"
 
 namespace tetwright {
-
-/// A length, absolute or relative to the size of the input.
-struct Length {
-  double value = 0;  ///< above 0; input units, or percent of the diagonal of the inputs' bounding box
-  bool percent = false;
-
-  double in_input_units(double diagonal) const { return percent ? value / 100 * diagonal : value; }
-};
-
-/// Length in input units; 0 for std::nullopt.
-inline double in_input_units(const std::optional<Length>& length, double diagonal) {
-  return length ? length->in_input_units(diagonal) : 0;
-}
 
 /// Cells of the dense mesh. For scans.
 struct CellOptions {
@@ -217,8 +205,8 @@ struct InterfaceRequest {
 
 /// Options of prepare(), mesh_scans(), simplify_mesh() and improve_mesh(). prepare() uses all of them;
 /// mesh_scans() ignores `shapes` and `schedule`; simplify_mesh() ignores `cells`, `bodies` and `labels`;
-/// improve_mesh() uses only `shapes`, `values`, `parting`, `feature_angle`, `order`, `seed`, `limits` and
-/// `acceptance`.
+/// improve_mesh() uses only `shapes`, `values`, `selections`, `parting`, `feature_angle`, `order`, `seed`,
+/// `limits` and `acceptance`.
 struct PrepareOptions {
   CellOptions cells;
   BodyOptions bodies;
@@ -230,6 +218,8 @@ struct PrepareOptions {
   TargetOptions target;
   SizeOptions sizes;
   ValueOptions values;  ///< images whose values the result has as fields
+  /// Sets of boundary faces of the result, as groups. One without faces is a shortfall.
+  std::vector<FaceSelection> selections;
   /// Interfaces at which the result parts. Where several requests have a face, those that are cohesive come
   /// first, then the first of the others.
   std::vector<InterfaceRequest> parting;
