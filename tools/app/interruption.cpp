@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <csignal>
@@ -22,26 +23,37 @@ bool stderr_is_terminal = false;
 
 std::atomic<const char*> line_to_say{nullptr};
 
+/// The file of say_nothing_without(), whose name is complete while `watched` is true.
+std::array<char, 4001> watched_file;
+std::atomic<bool> watched = false;
+
 void say(const char* text) {
   [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, text, std::strlen(text));
 }
 
 /// Async-signal-safe.
 void end_at_once(int) {
+  const bool told_by_another = watched && access(watched_file.data(), F_OK) != 0;
   const bool output_is_there = abandon_output_files();
   if (stderr_is_terminal) say("\r\x1b[K");  // erases a progress bar
-  if (const char* line = line_to_say)
-    say(line);
-  else if (output_is_there)
-    say("tetwright: interrupted after the output was written\n");
-  else
-    say("tetwright: interrupted, nothing was written\n");
+  const char* line = line_to_say;
+  if (!line)
+    line = output_is_there ? "tetwright: interrupted after the output was written\n"
+                           : "tetwright: interrupted, nothing was written\n";
+  if (!told_by_another) say(line);
   _exit(static_cast<int>(ExitStatus::interrupted));
 }
 
 }  // namespace
 
 void say_when_interrupted(const char* line) { line_to_say = line; }
+
+void say_nothing_without(const std::string& path) {
+  watched = false;
+  if (path.empty() || path.size() >= watched_file.size()) return;
+  std::copy_n(path.c_str(), path.size() + 1, watched_file.begin());
+  watched = true;
+}
 
 void handle_interruptions() {
   struct sigaction action {};

@@ -2,6 +2,7 @@
 #include "tools/bricks/brick_bytes.h"
 
 #include <zstd.h>
+#include <zstd_errors.h>
 
 #include <memory>
 
@@ -54,7 +55,8 @@ void archive_part(Archive& members, Part& part, Statistics& dense) {
 /// Block by block: a damaged size in the frame must not ask for memory.
 std::string decompressed(std::string_view bytes, const std::string& name) {
   const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context(ZSTD_createDCtx(), ZSTD_freeDCtx);
-  if (!context) throw OutputError("not enough memory to read a brick");
+  const auto fail = [] { throw OutputError("not enough memory to read a brick"); };
+  if (!context) fail();
   std::string all, block(ZSTD_DStreamOutSize(), '\0');
   ZSTD_inBuffer in{bytes.data(), bytes.size(), 0};
   std::size_t left = 1;  // 0 at the end of the frame
@@ -62,6 +64,7 @@ std::string decompressed(std::string_view bytes, const std::string& name) {
     ZSTD_outBuffer out{block.data(), block.size(), 0};
     const std::size_t before = in.pos;
     left = ZSTD_decompressStream(context.get(), &out, &in);
+    if (ZSTD_getErrorCode(left) == ZSTD_error_memory_allocation) fail();
     if (ZSTD_isError(left))
       throw InputError(name, 0, std::string("the brick is damaged: ") + ZSTD_getErrorName(left) + remedy);
     all.append(block.data(), out.pos);

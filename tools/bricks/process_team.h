@@ -10,6 +10,8 @@
 
 namespace tetwright {
 
+class Hdf5Writer;
+
 /// Processes that work on one job together. All of them read the same input with the same options; one, the
 /// leader, has the others do tasks and does everything else. They share neither memory nor, unless a task
 /// says so, folders.
@@ -44,6 +46,20 @@ class ProcessTeam {
   virtual void end() = 0;
   /// The other members' part: does tasks until the leader calls end().
   virtual void help(const Work& work) = 0;
+  /// Whether members write HDF5 files together.
+  virtual bool writes_hdf5() const = 0;
+  /// The leader's part: has all members write an HDF5 file, whose folder they see. The others are in help().
+  /// \param temporary an existing file, which is overwritten
+  /// \param path for messages
+  /// \param content adds the contents; called in the leader
+  /// \return number of members
+  /// \pre writes_hdf5()
+  /// \throws OutputError if any of them does not see it, or cannot sync it to the disk. If one fails while
+  /// others
+  ///   may wait for it, all processes end with the status of that error, the file is removed, and that one
+  ///   prints why
+  virtual std::size_t write_hdf5(const std::string& temporary, const std::string& path,
+                                 const std::function<void(Hdf5Writer&)>& content) = 0;
   /// Tells the leader that this member, another one, has failed. May return before the leader knows.
   /// \param status exit status of the program
   virtual void report(int status, const std::string& message) = 0;

@@ -17,6 +17,11 @@
 
 #include "tetwright/error.h"
 #include "tools/app/exit_status.h"
+#include "tools/mpi/end_all_ranks.h"
+#ifdef TETWRIGHT_PARALLEL_HDF5
+#include "common/files/byte_archive.h"
+#include "tools/mpi/parallel_hdf5.h"
+#endif
 
 namespace tetwright {
 
@@ -33,7 +38,8 @@ enum Tag : int {
 
 using Job = std::array<std::int64_t, 1>;   ///< hash
 using Item = std::array<std::int64_t, 2>;  ///< task and number of bytes
-constexpr std::int64_t no_task = -1;
+/// No task; a file for all to write: its names, then one content after the other.
+constexpr std::int64_t no_task = -1, hdf5_file = -2;
 
 /// Bytes: MPI counts them by an int.
 constexpr std::size_t max_message = std::size_t{1} << 30;
@@ -212,14 +218,77 @@ bool MpiTeam::helper_asked() {
   return true;
 }
 
+void MpiTeam::wait_for_helper() {
+  while (!helper_asked()) {
+    progress_->throw_if_stopped();
+    std::this_thread::sleep_for(between_looks);
+  }
+}
+
+#ifdef TETWRIGHT_PARALLEL_HDF5
+
+bool MpiTeam::writes_hdf5() const { return true; }
+
+std::size_t MpiTeam::write_hdf5(const std::string& temporary, const std::string& path,
+                                const std::function<void(Hdf5Writer&)>& content) {
+  while (waiting_.size() + 1 < static_cast<std::size_t>(size_)) wait_for_helper();
+  ByteWriter names;
+  names(temporary, path);
+  for (const int helper : waiting_) send_item(hdf5_file, names.bytes, helper, order);
+  waiting_.clear();
+  ParallelHdf5 file(temporary, path,
+                    {[&](const std::string& bytes, int helper) {
+                       progress_->throw_if_stopped();
+                       send_item(hdf5_file, bytes, helper, order);
+                     },
+                     {}});
+  content(file);
+  file.close();
+  return static_cast<std::size_t>(size_);
+}
+
+namespace {
+
+/// A helper's part of write_hdf5().
+void help_with_hdf5(const std::string& order_of_file) {
+  std::string temporary, path;
+  try {
+    ByteReader(order_of_file, "an HDF5 file", "the message with its name is incomplete")(temporary, path);
+  } catch (const std::exception& e) {
+    end_all_ranks({}, "an HDF5 file", e.what());
+  }
+  ParallelHdf5(temporary, path,
+               {{},
+                [] {
+                  wait_for(0, order);
+                  return receive_item(0, order).second;
+                }})
+      .follow();
+}
+
+}  // namespace
+
+#else
+
+bool MpiTeam::writes_hdf5() const { return false; }
+std::size_t MpiTeam::write_hdf5(const std::string&, const std::string&,
+                                const std::function<void(Hdf5Writer&)>&) {
+  throw InternalError("this build has no parallel HDF5");
+}
+namespace {
+void help_with_hdf5(const std::string&) {
+  end_all_ranks({}, "an HDF5 file",
+                "this rank's build has no parallel HDF5; give all ranks the same program");
+}
+}  // namespace
+
+#endif
+
 void MpiTeam::end() {
   std::set<int> ended;
   std::deque<int> for_next_kind;
   while (ended.size() + 1 < static_cast<std::size_t>(size_)) {
-    while (waiting_.empty() && !helper_asked()) {
-      progress_->throw_if_stopped();
-      std::this_thread::sleep_for(between_looks);
-    }
+    if (waiting_.empty()) wait_for_helper();
     const int helper = waiting_.front();
     waiting_.pop_front();
     if (ended.insert(helper).second)
@@ -237,7 +306,10 @@ void MpiTeam::help(const Work& work) {
     wait_for(0, order);
     const auto [task, bytes] = receive_item(0, order);
     if (task == no_task) return;
-    send_item(task, work(bytes), 0, result);
+    if (task == hdf5_file)
+      help_with_hdf5(bytes);
+    else
+      send_item(task, work(bytes), 0, result);
   }
 }
 

@@ -24,6 +24,9 @@ class MpiTeam final : public ProcessTeam {
   std::size_t lead(const Tasks& tasks) override;
   void end() override;
   void help(const Work& work) override;
+  bool writes_hdf5() const override;
+  std::size_t write_hdf5(const std::string& temporary, const std::string& path,
+                         const std::function<void(Hdf5Writer&)>& content) override;
   void report(int status, const std::string& message) override;
   /// Waits in a helper, and tells the helpers in the leader, that the program ends.
   void part();
@@ -32,6 +35,8 @@ class MpiTeam final : public ProcessTeam {
   class Service;
   /// Looks for a helper that asks for a task, and adds it to waiting_. Throws the error of one that failed.
   bool helper_asked();
+  /// Waits until one has asked.
+  void wait_for_helper();
 
   int rank_ = 0, size_ = 1;
   bool has_news_ = true;  ///< of a helper: it has neither helped nor reported, and the leader may wait for it

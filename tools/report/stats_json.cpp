@@ -452,6 +452,7 @@ std::string stats_json(const CommandRun& ended) {
   if (!run.bins.empty()) j["bins"] = bins_json(run.bins);
   if (ended.parts) j["parts"] = partition_json(*ended.parts);
   if (ended.pieces_by_helpers) j["parts"]["by_helpers"] = *ended.pieces_by_helpers;
+  if (ended.hdf5_ranks) j["parts"]["hdf5_ranks"] = *ended.hdf5_ranks;
   if (run.edge_lengths) j["edge_lengths"] = edge_lengths_json(*run.edge_lengths, run.sizes);
   if (run.crease_comparison) j["creases"] = creases_json(*run.crease_comparison);
   j["iterations"] = nlohmann::json::array();

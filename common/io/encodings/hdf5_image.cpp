@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/encodings/hdf5_image.h"
 
-#include <algorithm>
-#include <array>
 #include <atomic>
 #include <cstdint>
 #include <utility>
 
 #include "common/io/encodings/hdf5_handle.h"
+#include "common/io/encodings/hdf5_layout.h"
 #include "common/message_text.h"
 #include "tetwright/error.h"
 
@@ -21,98 +20,54 @@ std::string unique_name() {
   return "tetwright-" + std::to_string(number++);
 }
 
+constexpr const char* no_file = "create a file in memory";
+
 /// Access properties of a file in memory that is never written to disk.
 Hdf5Handle in_memory() {
   constexpr std::size_t increment = std::size_t{1} << 20;
   Hdf5Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_fapl_core(access.id(), increment, false);
+  hdf5_layout::check(access.good() && H5Pset_fapl_core(access.id(), increment, false) >= 0, no_file);
   return access;
 }
 
-constexpr std::size_t max_chunk_bytes = std::size_t{1} << 20;
-constexpr unsigned compression_level = 4;
-
 }  // namespace
 
-struct Hdf5Writer::File {
+struct Hdf5Image::File {
   Hdf5Handle handle;
-
-  template <class Number>
-  void add(const std::string& name, std::span<const Number> values, std::size_t columns, hid_t stored,
-           hid_t native) {
-    const int dimensions = columns == 0 ? 1 : 2;
-    columns = std::max<std::size_t>(columns, 1);
-    const std::array<hsize_t, 2> size{values.size() / columns, columns};
-    const Hdf5Handle space(H5Screate_simple(dimensions, size.data(), nullptr), H5Sclose);
-    const Hdf5Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-    H5Pset_obj_track_times(creation.id(), false);  // same bytes for the same content
-    if (size[0] > 0) {
-      const std::array<hsize_t, 2> chunk{
-          std::clamp<hsize_t>(max_chunk_bytes / (sizeof(Number) * columns), 1, size[0]), columns};
-      H5Pset_chunk(creation.id(), dimensions, chunk.data());
-      H5Pset_deflate(creation.id(), compression_level);
-    }
-    const Hdf5Handle dataset(
-        H5Dcreate2(handle.id(), name.c_str(), stored, space.id(), H5P_DEFAULT, creation.id(), H5P_DEFAULT),
-        H5Dclose);
-    if (!dataset.good() || H5Dwrite(dataset.id(), native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) < 0)
-      throw OutputError("the HDF5 library cannot write " + std::to_string(values.size()) + " numbers of '" +
-                        name + "'; is there enough memory?");
-  }
-
-  void add_attribute(const std::string& group, const std::string& name, hid_t stored, hid_t space,
-                     hid_t native, const void* values) {
-    const Hdf5Handle attribute(H5Acreate_by_name(handle.id(), group.c_str(), name.c_str(), stored, space,
-                                                 H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                               H5Aclose);
-    if (!attribute.good() || H5Awrite(attribute.id(), native, values) < 0)
-      throw OutputError("the HDF5 library cannot add the attribute '" + name + "'");
-  }
 };
 
-Hdf5Writer::Hdf5Writer() {
+Hdf5Image::Hdf5Image() {
   quiet_hdf5();
   const Hdf5Handle access = in_memory();
   file_ = std::make_unique<File>(
       File{Hdf5Handle(H5Fcreate(unique_name().c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.id()), H5Fclose)});
-  if (!file_->handle.good()) throw OutputError("the HDF5 library cannot create a file in memory");
+  hdf5_layout::check(file_->handle.good(), no_file);
 }
-Hdf5Writer::~Hdf5Writer() = default;
+Hdf5Image::~Hdf5Image() = default;
 
-void Hdf5Writer::add(const std::string& name, std::span<const double> values, std::size_t columns) {
-  file_->add(name, values, columns, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE);
-}
-void Hdf5Writer::add(const std::string& name, std::span<const std::int64_t> values, std::size_t columns) {
-  file_->add(name, values, columns, H5T_STD_I64LE, H5T_NATIVE_INT64);
-}
-void Hdf5Writer::add(const std::string& name, std::span<const std::int32_t> values, std::size_t columns) {
-  file_->add(name, values, columns, H5T_STD_I32LE, H5T_NATIVE_INT32);
-}
-void Hdf5Writer::add(const std::string& name, std::span<const std::uint8_t> values, std::size_t columns) {
-  file_->add(name, values, columns, H5T_STD_U8LE, H5T_NATIVE_UINT8);
-}
-
-void Hdf5Writer::add_group(const std::string& name) {
-  const Hdf5Handle group(H5Gcreate2(file_->handle.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                         H5Gclose);
-  if (!group.good()) throw OutputError("the HDF5 library cannot add the group '" + name + "'");
+void Hdf5Image::add(const std::string& name, const Hdf5Numbers& values, std::size_t columns) {
+  const hdf5_layout::Type type = hdf5_layout::type_of(values.index());
+  const std::size_t count = hdf5_layout::count_of(values);
+  Hdf5Handle dataset =
+      hdf5_layout::create(file_->handle.id(), name, type, hdf5_layout::shape_of(count, columns, type.bytes),
+                          hdf5_layout::Storage::compressed);
+  hdf5_layout::check(
+      H5Dwrite(dataset.id(), type.native, H5S_ALL, H5S_ALL, H5P_DEFAULT, hdf5_layout::data_of(values)) >= 0 &&
+          dataset.close() >= 0,
+      "write " + std::to_string(count) + " numbers of '" + name + "'; is there enough memory?");
 }
 
-void Hdf5Writer::add_attribute(const std::string& group, const std::string& name, const std::string& text) {
-  const Hdf5Handle type(H5Tcopy(H5T_C_S1), H5Tclose), space(H5Screate(H5S_SCALAR), H5Sclose);
-  H5Tset_size(type.id(), text.size());
-  H5Tset_strpad(type.id(), H5T_STR_NULLPAD);
-  file_->add_attribute(group, name, type.id(), space.id(), type.id(), text.data());
+void Hdf5Image::add_group(const std::string& name) { hdf5_layout::add_group(file_->handle.id(), name); }
+void Hdf5Image::add_attribute(const std::string& group, const std::string& name, const std::string& text) {
+  hdf5_layout::add_attribute(file_->handle.id(), group, name, text);
 }
-void Hdf5Writer::add_attribute(const std::string& group, const std::string& name,
-                               std::span<const std::int64_t> values) {
-  const hsize_t size = values.size();
-  const Hdf5Handle space(H5Screate_simple(1, &size, nullptr), H5Sclose);
-  file_->add_attribute(group, name, H5T_STD_I64LE, space.id(), H5T_NATIVE_INT64, values.data());
+void Hdf5Image::add_attribute(const std::string& group, const std::string& name,
+                              std::span<const std::int64_t> values) {
+  hdf5_layout::add_attribute(file_->handle.id(), group, name, values);
 }
 
-std::string Hdf5Writer::bytes() {
-  H5Fflush(file_->handle.id(), H5F_SCOPE_GLOBAL);
+std::string Hdf5Image::bytes() {
+  hdf5_layout::check(H5Fflush(file_->handle.id(), H5F_SCOPE_GLOBAL), "end its file in memory");
   const ssize_t size = H5Fget_file_image(file_->handle.id(), nullptr, 0);
   std::string out(size > 0 ? static_cast<std::size_t>(size) : 0, '\0');
   if (size <= 0 || H5Fget_file_image(file_->handle.id(), out.data(), out.size()) != size)
@@ -123,7 +78,7 @@ std::string Hdf5Writer::bytes() {
 struct Hdf5Reader::File {
   explicit File(std::string of_bytes) : bytes(std::move(of_bytes)) {
     const Hdf5Handle access = in_memory();
-    H5Pset_file_image(access.id(), bytes.data(), bytes.size());
+    hdf5_layout::check(H5Pset_file_image(access.id(), bytes.data(), bytes.size()), "copy a file in memory");
     id = H5Fopen(unique_name().c_str(), H5F_ACC_RDONLY, access.id());
   }
   ~File() {

@@ -8,28 +8,22 @@
 #include <string_view>
 #include <vector>
 
+#include "common/io/encodings/hdf5_writer.h"
+
 namespace tetwright {
 
-/// Writes an HDF5 file in memory with the HDF5 library. Not safe for concurrent use, since the library is
-/// not.
-class Hdf5Writer {
+/// Writes an HDF5 file in memory with the HDF5 library. Equal contents give equal bytes.
+class Hdf5Image final : public Hdf5Writer {
  public:
-  Hdf5Writer();
-  ~Hdf5Writer();
+  Hdf5Image();
+  ~Hdf5Image() override;
 
-  /// Adds a group with this name, for names such as "group/dataset".
-  void add_group(const std::string& name);
-  /// Add attributes to a group: a text, and a list of numbers.
-  void add_attribute(const std::string& group, const std::string& name, const std::string& text);
-  void add_attribute(const std::string& group, const std::string& name, std::span<const std::int64_t> values);
-  /// Adds a dataset with `columns` numbers in each row, compressed by zlib.
-  /// \param name path of a group that was added, and a name without slashes; or only the latter
-  /// \param columns 0: a list, with one dimension
-  void add(const std::string& name, std::span<const double> values, std::size_t columns);
-  void add(const std::string& name, std::span<const std::int64_t> values, std::size_t columns);
-  void add(const std::string& name, std::span<const std::int32_t> values, std::size_t columns);
-  void add(const std::string& name, std::span<const std::uint8_t> values, std::size_t columns);
-  /// Bytes of the file; equal datasets give equal bytes.
+  void add_group(const std::string& name) override;
+  void add_attribute(const std::string& group, const std::string& name, const std::string& text) override;
+  void add_attribute(const std::string& group, const std::string& name,
+                     std::span<const std::int64_t> values) override;
+  void add(const std::string& name, const Hdf5Numbers& values, std::size_t columns) override;
+  /// Bytes of the file.
   std::string bytes();
 
  private:

@@ -43,7 +43,7 @@ void write_part_files(const TetFormat& format, const MeshPieces& pieces, const s
                       OutputFiles& files, const FileSharing* share) {
   const PartFiles& in_parts = format.part_files;
   if (in_parts.write) {
-    in_parts.write(pieces, path, files);
+    in_parts.write(pieces, path, files, share);
     return;
   }
   const DividedMesh& whole = pieces.whole();

@@ -7,6 +7,8 @@
 #include "common/files/file_names.h"
 #include "common/io/elements/vtk_cells.h"
 #include "common/io/elements/vtk_pieces.h"
+#include "common/io/encodings/hdf5_file.h"
+#include "common/io/encodings/hdf5_image.h"
 #include "common/io/tets/abaqus.h"
 #include "common/io/tets/febio.h"
 #include "common/io/tets/medit.h"
@@ -73,11 +75,19 @@ void write_as_one(const MeshToWrite& mesh, const std::string& /*first*/, const B
   sink(write(mesh));
 }
 
+template <void (*add)(const MeshToWrite&, Hdf5Writer&)>
+void write_image(const MeshToWrite& mesh, const std::string& /*first*/, const ByteSink& sink) {
+  Hdf5Image image;
+  add(mesh, image);
+  sink(image.bytes());
+}
+
 const std::vector<WrittenFile>& xdmf_files() {
-  static const std::vector<WrittenFile> files{{".h5", write_alone<write_xdmf_numbers>},
-                                              {".xdmf", write_xdmf_mesh},
-                                              {"_facets.h5", write_alone<write_xdmf_facet_numbers>},
-                                              {"_facets.xdmf", write_xdmf_facets}};
+  static const std::vector<WrittenFile> files{
+      {".h5", write_image<add_xdmf_numbers>, add_xdmf_numbers},
+      {".xdmf", write_xdmf_mesh},
+      {"_facets.h5", write_image<add_xdmf_facet_numbers>, add_xdmf_facet_numbers},
+      {"_facets.xdmf", write_xdmf_facets}};
   return files;
 }
 
@@ -88,13 +98,20 @@ std::vector<std::string> files_of_xdmf(const std::string& path, PartNumber /*par
 }
 
 /// Writes the mesh as one, with the tets of each part in succession.
-void write_xdmf_parts(const MeshPieces& pieces, const std::string& path, OutputFiles& files) {
+void write_xdmf_parts(const MeshPieces& pieces, const std::string& path, OutputFiles& files,
+                      const FileSharing* share) {
   const OrderedMesh ordered = ordered_by_part(pieces);
   const MeshToWrite mesh(ordered.mesh, ordered.midside ? &*ordered.midside : nullptr);
   const std::vector<std::string> paths = files_of_xdmf(path, pieces.whole().parts);
   const std::string first = std::filesystem::path(paths.front()).filename().string();
-  for (std::size_t i = 0; i < paths.size(); ++i)
-    files.write(paths[i], [&](const ByteSink& sink) { xdmf_files()[i].write(mesh, first, sink); });
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    const WrittenFile& file = xdmf_files()[i];
+    if (file.add)
+      write_hdf5_file(
+          paths[i], files, [&](Hdf5Writer& writer) { file.add(mesh, writer); }, share);
+    else
+      files.write(paths[i], [&](const ByteSink& sink) { file.write(mesh, first, sink); });
+  }
 }
 
 template <NameRules (*rules)()>

@@ -7,6 +7,7 @@
 
 #include "common/io/names/mesh_parts.h"
 #include "common/mesh/mesh_pieces.h"
+#include "tetwright/file_sharing.h"
 #include "tetwright/files.h"
 #include "tetwright/io.h"
 #include "tetwright/tet_mesh.h"
@@ -18,13 +19,16 @@ struct WrittenFile {
   const char* extension;
   /// \param first name, without folders, of the first file of the mesh
   void (*write)(const MeshToWrite& mesh, const std::string& first, const ByteSink& sink);
+  void (*add)(const MeshToWrite& mesh, Hdf5Writer& file) = nullptr;  ///< the same, if it is an HDF5 file
 };
 
 /// How a format holds a mesh in parts, each with the tets of others next to it.
 struct PartFiles {
   std::vector<std::string> (*names)(const std::string& path, PartNumber parts) = nullptr;  ///< of the files
   /// Writes all files. Null: the first ones are those of the pieces, in ascending order.
-  void (*write)(const MeshPieces& pieces, const std::string& path, OutputFiles& files) = nullptr;
+  /// \param share as for write_tet_mesh()
+  void (*write)(const MeshPieces& pieces, const std::string& path, OutputFiles& files,
+                const FileSharing* share) = nullptr;
   void (*write_piece)(const MeshPiece& piece, const DividedMesh& whole, const ByteSink& sink) = nullptr;
   /// Writes the last file. Null: there are only pieces.
   /// \param stem its name without folders and extension

@@ -8,7 +8,7 @@
 #include "common/io/elements/element_types.h"
 #include "common/io/elements/vtk_cells.h"
 #include "common/io/elements/vtk_pieces.h"
-#include "common/io/encodings/hdf5_image.h"
+#include "common/io/encodings/hdf5_file.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/names/mesh_parts.h"
 #include "common/io/tets/vtu.h"
@@ -118,9 +118,8 @@ void VtkHdfWriter::add(const MeshPiece& piece) {
   append(a.cell_fields, piece.mesh.cell_fields);
 }
 
-std::string VtkHdfWriter::bytes() {
-  Arrays& a = *arrays_;
-  Hdf5Writer file;
+void VtkHdfWriter::write(Hdf5Writer& file) const {
+  const Arrays& a = *arrays_;
   file.add_group("VTKHDF");
   file.add_attribute("VTKHDF", "Version", std::array<std::int64_t, 2>{1, 0});
   file.add_attribute("VTKHDF", "Type", "UnstructuredGrid");
@@ -156,14 +155,14 @@ std::string VtkHdfWriter::bytes() {
   add_list(file, field_data + "/" + vtk_whole_mesh,
            std::vector<std::int64_t>{whole_.parts, static_cast<std::int64_t>(whole_.tets),
                                      static_cast<std::int64_t>(whole_.nodes)});
-  return file.bytes();
 }
 
-void write_vtkhdf(const MeshPieces& pieces, const std::string& path, OutputFiles& files) {
+void write_vtkhdf(const MeshPieces& pieces, const std::string& path, OutputFiles& files,
+                  const FileSharing* share) {
   VtkHdfWriter writer(pieces.whole());
   for (PartNumber part = 0; part < pieces.whole().parts; ++part) writer.add(pieces.piece(part));
-  const std::string bytes = writer.bytes();
-  files.write(path, bytes);
+  write_hdf5_file(
+      path, files, [&](Hdf5Writer& file) { writer.write(file); }, share);
 }
 
 }  // namespace tetwright

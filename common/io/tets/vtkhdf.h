@@ -6,12 +6,14 @@
 #include <string>
 #include <vector>
 
+#include "common/io/encodings/hdf5_writer.h"
 #include "common/mesh/mesh_pieces.h"
+#include "tetwright/file_sharing.h"
 #include "tetwright/files.h"
 
 namespace tetwright {
 
-/// Writes a mesh in pieces as a VTKHDF file: an UnstructuredGrid of version 1.0 with the arrays of
+/// Contents of a mesh in pieces as a VTKHDF file: an UnstructuredGrid of version 1.0 with the arrays of
 /// elements/vtk_pieces.h, materials, names and fields as in .pvtu files. Needs memory for the whole file and
 /// its numbers. Not safe for concurrent use, since the HDF5 library is not.
 class VtkHdfWriter {
@@ -22,8 +24,8 @@ class VtkHdfWriter {
 
   /// Adds a piece; all must be added, in ascending order.
   void add(const MeshPiece& piece);
-  /// Bytes of the file, once all pieces are added.
-  std::string bytes();
+  /// Adds the contents of the file, once all pieces are added.
+  void write(Hdf5Writer& file) const;
 
  private:
   struct Arrays;
@@ -35,6 +37,8 @@ class VtkHdfWriter {
 std::string vtkhdf_name(const std::string& name);
 
 /// Writes the file of all pieces.
-void write_vtkhdf(const MeshPieces& pieces, const std::string& path, OutputFiles& files);
+/// \param share as for write_tet_mesh()
+void write_vtkhdf(const MeshPieces& pieces, const std::string& path, OutputFiles& files,
+                  const FileSharing* share);
 
 }  // namespace tetwright

@@ -399,10 +399,9 @@ ReadTetMesh read_xdmf(std::string_view bytes, const std::string& name, const Fil
   return XdmfReader(bytes, name, read_file).read(options, facets);
 }
 
-void write_xdmf_numbers(const MeshToWrite& written, const ByteSink& sink) {
+void add_xdmf_numbers(const MeshToWrite& written, Hdf5Writer& file) {
   const TetMesh& mesh = written.mesh;
   const MidsideNodes* midside = written.midside;
-  Hdf5Writer file;
   std::vector<double> points;
   points.reserve(3 * written.nodes());
   for (std::size_t i = 0; i < written.nodes(); ++i)
@@ -432,10 +431,9 @@ void write_xdmf_numbers(const MeshToWrite& written, const ByteSink& sink) {
   }
   add_fields(file, written.node_fields(), "point_field");
   add_fields(file, mesh.cell_fields, "cell_field");
-  sink(file.bytes());
 }
 
-void write_xdmf_facet_numbers(const MeshToWrite& written, const ByteSink& sink) {
+void add_xdmf_facet_numbers(const MeshToWrite& written, Hdf5Writer& file) {
   const TetMesh& mesh = written.mesh;
   const MidsideNodes* midside = written.midside;
   const auto first_midside = static_cast<std::int64_t>(mesh.points.size());
@@ -448,10 +446,8 @@ void write_xdmf_facet_numbers(const MeshToWrite& written, const ByteSink& sink) 
   }
   for (const MeshParts::Surface& s : mesh_parts(mesh, printable_names()).surfaces)
     for (const std::size_t f : s.faces) numbers[f] = static_cast<std::int32_t>(s.number);
-  Hdf5Writer file;
   file.add("triangles", std::span<const std::int64_t>(ids), midside ? 6 : 3);
   file.add(facet_attribute, std::span<const std::int32_t>(numbers), 1);
-  sink(file.bytes());
 }
 
 void write_xdmf_mesh(const MeshToWrite& written, const std::string& hdf5, const ByteSink& sink) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "common/io/encodings/hdf5_writer.h"
 #include "common/io/volumes/data_file.h"
 #include "tetwright/files.h"
 #include "tetwright/io.h"
@@ -29,8 +30,8 @@ ReadTetMesh read_xdmf(std::string_view bytes, const std::string& name, const Fil
 /// file, since readers expect a single grid in a file; the first HDF5 file has the points of both. Names are
 /// Information elements, as meshio reads them. Tets of ten nodes are in VTK's order.
 /// \param hdf5 name of the first HDF5 file, as the others refer to it
-void write_xdmf_numbers(const MeshToWrite& written, const ByteSink& sink);
-void write_xdmf_facet_numbers(const MeshToWrite& written, const ByteSink& sink);
+void add_xdmf_numbers(const MeshToWrite& written, Hdf5Writer& file);
+void add_xdmf_facet_numbers(const MeshToWrite& written, Hdf5Writer& file);
 void write_xdmf_mesh(const MeshToWrite& written, const std::string& hdf5, const ByteSink& sink);
 void write_xdmf_facets(const MeshToWrite& written, const std::string& hdf5, const ByteSink& sink);
 

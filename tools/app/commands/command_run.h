@@ -38,6 +38,7 @@ struct CommandRun {
   std::optional<PartitionStatistics> parts;  ///< of the mesh, with --parts
   /// Pieces of it that other members of a team wrote, if they are files of their own.
   std::optional<std::size_t> pieces_by_helpers;
+  std::optional<std::size_t> hdf5_ranks;      ///< members of a team that wrote HDF5 files together
   std::string error, stage;                   ///< message and stage of a run that failed
   std::optional<SurfaceDistances> distances;  ///< distances of the result; only with --report and a surface
 };

@@ -37,11 +37,14 @@ void write_mesh(const TetMesh& mesh, const Prepared& result, const std::optional
     return;
   }
   FileSharing share;
-  if (ProcessTeam* const team = run.line.options.bricks.team)
+  ProcessTeam* const team = run.line.options.bricks.team;
+  if (team)
     share.pieces = [&run, team](const PiecesToWrite& pieces) {
       run.pieces_by_helpers =
           team->lead({pieces.count, pieces.here, pieces.order, [](std::size_t, const std::string&) {}});
     };
+  if (team && team->writes_hdf5())
+    share.hdf5 = [&run, team](const auto&... file) { run.hdf5_ranks = team->write_hdf5(file...); };
   write_tet_mesh(written, *partition, outputs.mesh, &files, outputs.format, &share);
 }
 
