@@ -203,11 +203,11 @@ class SurfaceMeshing {
     budget_.deeper_where_cheap = !options_.max_refinement;
     if (options_.uniform) budget_.max_depth = 0, budget_.deeper_where_cheap = false;
     budget_.max_possible = max_possible_refinement(voxels_, largest_coordinate(input_));
+    using Budget = CellTuning::WallBudget;
+    const double allowed = options_.max_thin_tets > 0 ? options_.max_thin_tets : Budget::max_added_tets;
     budget_.base_tets =
-        std::max(CellTuning::WallBudget::min_cheap_tets, static_cast<double>(report_.estimate.tets));
-    budget_.max_tets =
-        std::max(options_.max_thin_tets > 0 ? options_.max_thin_tets : CellTuning::WallBudget::max_added_tets,
-                 budget_.base_tets);
+        std::max(std::min(Budget::min_cheap_tets, allowed), static_cast<double>(report_.estimate.tets));
+    budget_.max_tets = std::max(allowed, budget_.base_tets);
   }
   void choose_cells_of_surfaces() {
     report_.cell_size = cell_size(input_, options_);

@@ -97,8 +97,7 @@ DenseMesh mesh_input(const MesherInput& surfaces, PrepareRun& run) {
   const bool choose = !cells.resolution && !cells.size;
   const RequestedSizes& sizes = run.report.sizes;
   if (choose && target.tets && !cells.max_refinement)
-    options.max_thin_tets =
-        std::clamp(thin_tets_share * static_cast<double>(*target.tets), min_thin_tets, max_thin_tets);
+    options.max_thin_tets = thin_tets_of_target(static_cast<double>(*target.tets));
   if (choose && target.tets)
     options.resolution = resolution_for_target(surfaces, *target.tets, run.options.feature_angle);
   if (choose && run.task == Task::prepare)
@@ -203,8 +202,7 @@ DenseMesh mesh_input(ImplantedVolume& volume, PrepareRun& run) {
   options.min_thickness = in_input_units(cells.min_thickness, diagonal);
   const bool choose = !cells.resolution && !cells.size;
   if (choose && target.tets && !cells.max_refinement)
-    options.max_thin_tets =
-        std::clamp(thin_tets_share * static_cast<double>(*target.tets), min_thin_tets, max_thin_tets);
+    options.max_thin_tets = thin_tets_of_target(static_cast<double>(*target.tets));
   if (choose)
     options.voxel_size = run.task == Task::prepare && target.tets
                              ? cell_size_for_target(volume, *target.tets, options)

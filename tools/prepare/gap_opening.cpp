@@ -63,8 +63,9 @@ GapOpening find_gap_opening(const MesherInput& surfaces, const MesherReport& rep
     const double now = static_cast<double>(*target.tets);
     const auto opens = [&](double cell, double tets) {
       const auto [count, added] = need(cell);
-      const double cheap = std::max(cheap_tets, base * tets / now);
-      const double limit = std::max(cheap, std::clamp(thin_tets_share * tets, min_thin_tets, max_thin_tets));
+      const double allowed = thin_tets_of_target(tets);
+      const double cheap = std::max(std::min(cheap_tets, allowed), base * tets / now);
+      const double limit = std::max(cheap, allowed);
       return count <= max_wall_refinement &&
              added <= budget_share * (count > default_wall_refinement ? cheap : limit);
     };

@@ -60,7 +60,7 @@ struct PartedInterface {
 std::vector<PartedInterface> part_interfaces(TetMesh& mesh, MidsideNodes* midside,
                                              std::span<const InterfaceToPart> interfaces);
 
-/// What join_parted_interfaces() joined.
+/// Result of join_parted_interfaces().
 struct JoinedInterfaces {
   std::vector<InterfaceToPart> parts;  ///< for part_interfaces(), which parts them again
   std::vector<std::string> names;      ///< of the parts

@@ -92,7 +92,7 @@ struct CohesivePart {
 /// \param names, numbers taken by others in the same format
 std::vector<CohesivePart> cohesive_parts(const TetMesh& mesh, const std::set<std::string>& names,
                                          const std::set<std::int64_t>& numbers, const NameRules& rules);
-/// The same, where only the materials have taken names and numbers.
+/// Likewise, where only the materials have taken names and numbers.
 std::vector<CohesivePart> cohesive_parts(const TetMesh& mesh,
                                          const std::vector<MeshParts::Material>& materials,
                                          const NameRules& rules);

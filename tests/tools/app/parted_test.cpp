@@ -74,7 +74,7 @@ TEST_F(PartedBoxes, AllInterfacesPart) {
       << check.err;
 }
 
-// What was parted stays so: simplified, improved and with values, in another format.
+// Parted interfaces stay so when the mesh is simplified or improved, in another format.
 TEST_F(PartedBoxes, OtherCommandsKeepThem) {
   ASSERT_EQ(run(boxes("--split-interface bone,skin --cohesive implant,bone", "m.msh")).status, 0);
   const auto expect_kept = [&](const std::string& file) {
@@ -153,7 +153,7 @@ TEST_F(PartedBoxes, SelectionsAreGroupsInFiles) {
   EXPECT_NEAR(selections.at(1).at("area").get<double>(), 4, 1e-9);
   const std::set<std::string> names = groups(path("m.inp"));
   EXPECT_TRUE(names.contains("top") && names.contains("seat") && names.contains("bone|implant:bone"));
-  // Of a mesh, too; what selects nothing is written nevertheless.
+  // Meshes are selected from, too; the mesh is written although a rule selects nothing.
   const Answer a =
       run("simplify " + path("m.inp") + " --target-tets 400 --select none=plane:z=9 -o " + path("n.msh"));
   EXPECT_EQ(a.status, 1) << a.err;

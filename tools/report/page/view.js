@@ -262,7 +262,7 @@ function fill_normal(position, normal, i) {
 
 /** Mouse, fingers, wheel and keys. `click` is called with the pixel of a click that is no drag. */
 function steer(view, element, click) {
-  const pointers = new Map(), most_pixels = 3;
+  const pointers = new Map(), max_pixels = 3;
   let dragged = 0;
   const spread = () => {
     const [a, b] = [...pointers.values()];
@@ -292,7 +292,7 @@ function steer(view, element, click) {
     }
   });
   canvas.addEventListener("pointerup", event => {
-    if (!pointers.has(event.pointerId) || dragged > most_pixels) return;
+    if (!pointers.has(event.pointerId) || dragged > max_pixels) return;
     const {left, top} = canvas.getBoundingClientRect();
     click(event.clientX - left, event.clientY - top);
   });
