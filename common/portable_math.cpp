@@ -105,4 +105,28 @@ double portable_log(double x) {
   return 2 * s * sum + p.exponent * std::numbers::ln2;
 }
 
+CosineSine portable_cosine_sine(double degrees) {
+  int quarters = 0;
+  const double rest = std::remquo(degrees, 90.0, &quarters);  // exact, at most 45
+  // Taylor series for |x| <= pi/4: the first terms left out are below 5e-17 and 3e-18.
+  const double x = rest * (pi / 180), s = x * x;
+  double cosine = 0, sine = 0;
+  for (int k = 8; k >= 1; --k) {
+    cosine = (1 - cosine) * s / ((2 * k - 1) * (2 * k));
+    sine = (1 - sine) * s / ((2 * k) * (2 * k + 1));
+  }
+  cosine = 1 - cosine;
+  sine = x * (1 - sine);
+  switch (static_cast<unsigned>(quarters) % 4) {
+    case 1:
+      return {-sine, cosine};
+    case 2:
+      return {-cosine, -sine};
+    case 3:
+      return {sine, -cosine};
+    default:
+      return {cosine, sine};
+  }
+}
+
 }  // namespace tetwright

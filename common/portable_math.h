@@ -17,5 +17,10 @@ double portable_cbrt(double x);
 double portable_inverse_cbrt(double x);
 /// Natural logarithm of a finite normal x > 0.
 double portable_log(double x);
+/// Cosine and sine of a finite angle in degrees, exact for multiples of 90.
+struct CosineSine {
+  double cosine, sine;
+};
+CosineSine portable_cosine_sine(double degrees);
 
 }  // namespace tetwright

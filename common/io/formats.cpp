@@ -118,10 +118,19 @@ const typename Formats::value_type& need_format(const Formats& formats, const st
 }
 
 TetFormatInfo info_of(const TetFormat& format) {
-  return {format.name,         format.extension,   format.names,
-          format.surfaces,     format.patch_names, format.fields,
-          format.second_order, format.wedges,      static_cast<bool>(format.part_files),
-          format.bins,         format.moduli};
+  return {format.name,
+          format.extension,
+          format.names,
+          format.surfaces,
+          format.patch_names,
+          format.fields,
+          format.second_order,
+          format.wedges,
+          static_cast<bool>(format.part_files),
+          format.bins,
+          format.moduli,
+          format.inner_surfaces,
+          format.single_precision};
 }
 
 /// A format of several files replaces the path's extension by its own ones. The path must not have the
@@ -174,7 +183,11 @@ const TetFormat& need_format_of_parts(const std::string& path, const std::string
 
 /// \param parts 0: the mesh is not divided
 const TetFormat& need_written_format(const std::string& path, const std::string& name, PartNumber parts) {
-  return parts > 0 ? need_format_of_parts(path, name) : need_written_format(path, name);
+  const TetFormat& format = parts > 0 ? need_format_of_parts(path, name) : need_written_format(path, name);
+  if (format.missing_library)
+    throw UsageError(path + ": this program was built without " + format.missing_library +
+                     ", which the format " + format.name + " needs; write another format");
+  return format;
 }
 
 /// Format with this name, an extension with or without its dot, or of the path's extension if the name is
@@ -440,7 +453,7 @@ void write_interfaces(const TetMesh& mesh, const std::string& path, OutputFiles*
 
 void write_tet_mesh(const MeshToWrite& mesh, const std::string& path, OutputFiles* files,
                     const std::string& name) {
-  const TetFormat& format = need_written_format(path, name);
+  const TetFormat& format = need_written_format(path, name, PartNumber{0});
   if (format.write.empty()) {
     write_tet_mesh(mesh, TetPartition{}, path, files, name);
     return;

@@ -68,9 +68,11 @@ BoundaryPlanes planes_of_boundary(const Star& star) {
                q = star.positions[s.second] - star.centre_position;
     const Vec3 normal = p.cross(q);
     if (!(normal.squaredNorm() > 0)) continue;
-    const bool known = std::any_of(
-        planes.normals.begin(), planes.normals.begin() + static_cast<std::ptrdiff_t>(planes.count),
-        [&](const Vec3& n) { return std::max(std::fabs(n.dot(p)), std::fabs(n.dot(q))) <= tolerance::flat_patch; });
+    const bool known =
+        std::any_of(planes.normals.begin(),
+                    planes.normals.begin() + static_cast<std::ptrdiff_t>(planes.count), [&](const Vec3& n) {
+                      return std::max(std::fabs(n.dot(p)), std::fabs(n.dot(q))) <= tolerance::flat_patch;
+                    });
     if (known) continue;
     if (planes.count == BoundaryPlanes::max_count) return {};
     planes.normals[planes.count++] = normal.normalized();

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "common/random.h"
 
@@ -68,6 +70,27 @@ TEST(PortableMath, LogAgreesWithLibm) {
     EXPECT_NEAR(portable_log(x), std::log(x), 4e-15 * std::fabs(std::log(x)) + 1e-16) << x;
   }
   EXPECT_EQ(portable_log(1), 0);
+}
+
+TEST(PortableMath, CosineAndSineAgreeWithLibm) {
+  Random random(6);
+  for (int i = 0; i < 100000; ++i) {
+    const double degrees = spread(random, -30, 9);
+    const auto [cosine, sine] = portable_cosine_sine(degrees);
+    const double radians = std::remainder(degrees, 360) * std::numbers::pi / 180;
+    EXPECT_NEAR(cosine, std::cos(radians), 4e-15) << degrees;
+    EXPECT_NEAR(sine, std::sin(radians), 4e-15) << degrees;
+  }
+  for (const auto& [degrees, cosine, sine] : {std::array{0.0, 1.0, 0.0},
+                                              {90, 0, 1},
+                                              {180, -1, 0},
+                                              {270, 0, -1},
+                                              {-90, 0, -1},
+                                              {360, 1, 0},
+                                              {-630, 0, 1}}) {
+    EXPECT_EQ(portable_cosine_sine(degrees).cosine, cosine) << degrees;
+    EXPECT_EQ(portable_cosine_sine(degrees).sine, sine) << degrees;
+  }
 }
 
 }  // namespace

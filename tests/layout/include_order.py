@@ -19,7 +19,7 @@ ALLOWED = {
 }
 # Allowed only here; the programs and tests on top of the libraries may include anything.
 FOLDERS_OF_LIBRARIES = {
-    "common/io": ("blosc.h", "gdcm", "hdf5.h", "libdeflate.h", "lz4.h", "lzma.h", "nlohmann/", "pugixml.hpp", "tiffio.h",
+    "common/io": ("blosc.h", "gdcm", "hdf5.h", "libdeflate.h", "lz4.h", "lzma.h", "netcdf", "nlohmann/", "pugixml.hpp", "tiffio.h",
                   "zip.h", "zlib.h", "zstd.h"),
 }
 FILES_OF_LIBRARIES = {

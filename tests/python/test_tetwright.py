@@ -466,3 +466,13 @@ def test_what_a_file_has_no_place_for_is_noted(tmp_path):
     assert "original names of fields" in made.notes[0]
     made.write(tmp_path / "m.inp")
     assert "m.inp: 3 fields (not written; .inp cannot hold them)" in made.notes[-1]
+
+
+def test_tets_lost_to_single_precision_are_a_shortfall(tmp_path, prepared):
+    far = prepared.points + [2.0**24, 0, 0]
+    meshio.Mesh(far, {"tetra": prepared.tets}).write(tmp_path / "far.vtu")
+    mesh = tetwright.read(tmp_path / "far.vtu")
+    mesh.write(tmp_path / "far.vtk")
+    assert mesh.shortfall == []
+    mesh.write(tmp_path / "far.usda")
+    assert "flat or negative in single precision" in mesh.shortfall[0]

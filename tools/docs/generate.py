@@ -200,7 +200,7 @@ $EndElementData
 USES = {
     "vtu": "ParaView, PyVista, VTK", "pvtu": "ParaView and parallel solvers", "vtkhdf": "ParaView, VTK", "msh22": "Gmsh, most readers of `.msh`", "msh41": "Gmsh 4", "msh41-binary": "Gmsh 4, large meshes",
     "medit": "mmg, Medit, FreeFEM", "medit-binary": "the same, large meshes", "vtk": "SOFA, deal.II, ParaView", "abaqus": "Abaqus, CalculiX",
-    "nastran": "Nastran", "febio": "FEBio", "xdmf": "dolfinx, ParaView", "tetgen": "TetGen and its readers",
+    "nastran": "Nastran", "febio": "FEBio", "exodus": "MOOSE, Cubit, ParaView", "usd": "OpenUSD", "xdmf": "dolfinx, ParaView", "tetgen": "TetGen and its readers",
 }
 
 
@@ -218,7 +218,7 @@ def tet_formats(program):
     help_text = program.help("prepare")
     names = re.search(r"of -o -: (.*?);", effect_of(help_text, "--output-format"))[1].split()
     readable = listed_extensions(re.search(r"Tet mesh: (.*)", program.help("improve"))[1])
-    extensions = {"vtu": ".vtu", "pvtu": ".pvtu", "vtkhdf": ".vtkhdf", "medit": ".mesh", "medit-binary": ".meshb", "vtk": ".vtk", "abaqus": ".inp", "nastran": ".bdf", "febio": ".feb",
+    extensions = {"vtu": ".vtu", "pvtu": ".pvtu", "vtkhdf": ".vtkhdf", "medit": ".mesh", "medit-binary": ".meshb", "vtk": ".vtk", "abaqus": ".inp", "nastran": ".bdf", "febio": ".feb", "exodus": ".exo", "usd": ".usda",
                   "xdmf": ".xdmf", "tetgen": ".node"}
     rows = []
     for name in names:

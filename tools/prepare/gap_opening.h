@@ -11,8 +11,8 @@ namespace tetwright {
 /// Dense tets that thin walls and gaps may add for each of the result, and the max of their number. A gap of
 /// .01 between boxes of size 1 stays open at 10,000 tets with some 3.5 million.
 inline constexpr double thin_tets_share = 400, max_thin_tets = 8e6;
-/// Some thousand tets open gaps with that many more. Fewer tets can hardly have thin walls and gaps, which then
-/// need not cost many times what the rest does.
+/// Some thousand tets open gaps with that many more. Fewer tets can hardly have thin walls and gaps, which
+/// then need not cost many times what the rest does.
 inline constexpr double small_target_share = 1000, small_target_tets = 2e6, min_thin_tets = 3e5;
 
 /// Dense tets that thin walls and gaps may add for a target.

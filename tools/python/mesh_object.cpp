@@ -161,6 +161,7 @@ void write_mesh_files(Mesh& mesh, const std::string& path, const std::string& fo
   // The interpreter's lock protects the mesh's own lists from other threads.
   const py::gil_scoped_acquire acquire;
   for (std::string& note : notes_of(report)) mesh.notes.push_back(std::move(note));
+  for (std::string& missed : shortfalls_of(report)) mesh.shortfall.push_back(std::move(missed));
 }
 
 }  // namespace

@@ -62,6 +62,7 @@ enum class DiagnosticCode : std::uint8_t {
   values_nearest,
   values_not_finite,
   not_written,
+  single_precision,
   names_changed,
   // Surfaces.
   points_merged,

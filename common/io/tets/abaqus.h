@@ -24,9 +24,13 @@ NameRules abaqus_names();
 /// Materials are the element sets of *SOLID SECTION, or those named by *ELEMENT lines if there is no section.
 /// They are numbered from 1 in order of appearance, unless comments of write_abaqus() give their tags.
 /// Surfaces of element faces become groups of faces, see take_triangles(). Cohesive elements (COH3D6) whose
-/// nodes coincide in pairs become TetMesh::wedges. Other volume elements, several
-/// parts or instances, and *INCLUDE are rejected. Other elements, sets and surfaces are counted in
-/// ReadTetMesh::dropped; keywords unrelated to the mesh are skipped.
+/// nodes coincide in pairs become TetMesh::wedges. Other volume elements and *INCLUDE are rejected. Other
+/// elements, sets and surfaces are counted in ReadTetMesh::dropped; keywords unrelated to the mesh are
+/// skipped.
+///
+/// Instances of parts are translated and rotated as the file says, and keep their own nodes. If there are
+/// several with tets, materials are called INSTANCE.ELSET, or INSTANCE where there is only one, and surfaces
+/// of parts INSTANCE.SURFACE. Parts without an instance are named in ReadTetMesh::dropped.
 ///
 /// No library is used: the only packaged reader, meshio's, is written in Python and reads no surfaces.
 /// \param name file name for messages

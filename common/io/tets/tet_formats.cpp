@@ -9,7 +9,9 @@
 #include "common/io/elements/vtk_pieces.h"
 #include "common/io/encodings/hdf5_file.h"
 #include "common/io/encodings/hdf5_image.h"
+#include "common/io/encodings/netcdf_image.h"
 #include "common/io/tets/abaqus.h"
+#include "common/io/tets/exodus.h"
 #include "common/io/tets/febio.h"
 #include "common/io/tets/medit.h"
 #include "common/io/tets/medit_binary.h"
@@ -20,6 +22,7 @@
 #include "common/io/tets/nastran.h"
 #include "common/io/tets/pvtu.h"
 #include "common/io/tets/tetgen.h"
+#include "common/io/tets/usd.h"
 #include "common/io/tets/vtk.h"
 #include "common/io/tets/vtkhdf.h"
 #include "common/io/tets/vtu.h"
@@ -119,6 +122,16 @@ MeshParts parts_by(const TetMesh& mesh) {
   return names_of_parts(mesh, rules());
 }
 constexpr auto printable_parts = parts_by<printable_names>;
+
+TetFormat exodus_with(const char* extension) {
+  return {.extension = extension,
+          .name = "exodus",
+          .write = {{extension, write_alone<write_exodus>}},
+          .parts = parts_by<exodus_names>,
+          .field_name = exodus_name,
+          .second_order = true,
+          .missing_library = has_netcdf() ? nullptr : "the netCDF library"};
+}
 
 /// Names as .vtu has them, and those of all surfaces.
 MeshParts vtk_piece_parts(const TetMesh& mesh) {
@@ -249,6 +262,9 @@ const std::vector<TetFormat>& tet_formats() {
        .second_order = true,
        .bins = BinsAs::materials_and_sets,
        .moduli = true},
+      exodus_with(".exo"),
+      exodus_with(".e"),
+      exodus_with(".ex2"),
       {.extension = ".xdmf",
        .name = "xdmf",
        .read_files = read_xdmf_files,
@@ -271,7 +287,14 @@ const std::vector<TetFormat>& tet_formats() {
        .read_files = read_tetgen_files,
        .write = tetgen,
        .parts = printable_parts,
-       .fields = false}};
+       .fields = false},
+      {.extension = ".usda",
+       .name = "usd",
+       .write = {{".usda", write_alone<write_usd>}},
+       .parts = usd_parts,
+       .fields = false,
+       .inner_surfaces = false,
+       .single_precision = true}};
   return formats;
 }
 

@@ -61,7 +61,9 @@ struct TetFormat {
   // Meaning as in TetFormatInfo.
   bool names = true, surfaces = true, patch_names = true, fields = true, second_order = false, wedges = false;
   BinsAs bins = BinsAs::none;
-  bool moduli = false;
+  bool moduli = false, inner_surfaces = true, single_precision = false;
+  /// Library that this build lacks, without which the format is not written; null: none.
+  const char* missing_library = nullptr;
 };
 
 /// All formats in the order in which they are listed. The first one with an extension is its default.

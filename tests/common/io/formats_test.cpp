@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tetwright/io.h"
 
+#include "common/io/encodings/netcdf_image.h"
 #include "common/io/volumes/volume_formats.h"
 #include "tests/common/io/expect_error.h"
 #include "tests/common/io/file_test.h"
@@ -28,7 +29,7 @@ TEST_F(Formats, KindsByExtension) {
   EXPECT_EQ(known_extensions(FileKind::tet_mesh),
             ".vtu .pvtu .msh .mesh .meshb .vtk .inp .bdf .xdmf .node .ele");
   EXPECT_EQ(known_extensions(FileKind::tet_mesh, FileUse::write),
-            ".vtu .pvtu .vtkhdf .msh .mesh .meshb .vtk .inp .bdf .feb .xdmf .node .ele");
+            ".vtu .pvtu .vtkhdf .msh .mesh .meshb .vtk .inp .bdf .feb .exo .e .ex2 .xdmf .node .ele .usda");
   for (const char* name : {"", "ply", "a/.ply/b", "x.vtl", "x.", "x.ply "})
     EXPECT_EQ(file_kind(name), FileKind::unknown);
 }
@@ -93,7 +94,15 @@ TEST_F(Formats, RoundTripThroughFiles) {
 TEST_F(Formats, EveryFormatOfTetMeshesIsWritten) {
   for (const TetFormatInfo& format : written_tet_formats()) {
     const std::string file = path("m" + format.extension);
-    write_tet_mesh(tricky_measurable_tets(), file, nullptr, format.name);
+    if (format.name == "exodus" && !has_netcdf()) {
+      EXPECT_NE(error_of<UsageError>([&] {
+                  check_output_path(file, FileKind::tet_mesh);
+                }).find("the netCDF library"),
+                std::string::npos);
+      continue;
+    }
+    write_tet_mesh(format.single_precision ? one_tet() : tricky_measurable_tets(), file, nullptr,
+                   format.name);
     EXPECT_EQ(written_tet_format(file, format.name).name, format.name);
     if (file_kind(file) == FileKind::unknown) continue;  // can only be written
     EXPECT_EQ(read_tet_mesh(file).mesh.tets.size(), tricky_measurable_tets().tets.size()) << format.name;

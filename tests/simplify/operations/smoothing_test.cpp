@@ -98,7 +98,8 @@ TEST(Smoothing, ACornerMayLeaveItsPlaceALittleWhereThatIsAsked) {
 
 // The boundary of grains is flat; only inside it may their junctions leave the curves.
 TEST(Smoothing, PointsThatMayLeaveTheirSurfaceStayOnFlatFacesAndStraightEdges) {
-  TetMesh mesh = grid_mesh({4, 4, 4}, [](int x, int y, int z) { return Tag(1 + (x * 7 + y * 3 + z * 5) % 4); });
+  TetMesh mesh =
+      grid_mesh({4, 4, 4}, [](int x, int y, int z) { return Tag(1 + (x * 7 + y * 3 + z * 5) % 4); });
   Random random(5);
   for (Vec3& p : mesh.points)
     for (int axis = 0; axis < 3; ++axis)

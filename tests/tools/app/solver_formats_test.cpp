@@ -33,6 +33,7 @@ TEST_F(SolverFormats, EveryFormatIsWrittenAndReadAgain) {
     SCOPED_TRACE(format.name);
     const std::string out = format.name + format.extension;
     const Answer a = simplified(out, "--output-format " + format.name);
+    if (a.status == 2 && a.err.find("was built without the netCDF library") != std::string::npos) continue;
     EXPECT_TRUE(a.status == 0 || a.status == 1) << a.err;
     if (file_kind(f / out) == FileKind::unknown) continue;
     const TetMesh back = read_tet_mesh(f / out).mesh;

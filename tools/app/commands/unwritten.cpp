@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "common/message_text.h"
 #include "tetwright/io.h"
 #include "tetwright/sheets.h"
 
@@ -114,6 +115,37 @@ void find_boundary_changes(const CommandLine& line, const TetMesh& mesh, Prepare
                report);
 }
 
+/// Adds a note about faces inside the mesh, if the format holds its outside alone and no other file has them.
+void find_unwritten_inner_faces(const CommandLine& line, const TetFormatInfo& format, const TetMesh& mesh,
+                                PrepareReport& report) {
+  if (format.inner_surfaces || line.outputs.no_boundary || !line.outputs.boundary.empty()) return;
+  const auto inside = std::count_if(mesh.interfaces.begin(), mesh.interfaces.end(),
+                                    [](const InterfaceTriangle& t) { return t.other.has_value(); });
+  note_missing(shown(line.outputs.mesh), "faces between materials and of sheets",
+               static_cast<std::size_t>(inside),
+               "; " + format.extension + " cannot hold them, but --boundary FILE can", report);
+}
+
+/// Adds a shortfall if the format rounds coordinates and tets do not survive that.
+void find_rounded_tets(const CommandLine& line, const TetFormatInfo& format, const TetMesh& mesh,
+                       PrepareReport& report) {
+  if (!format.single_precision) return;
+  const SinglePrecisionLoss loss = single_precision_loss(mesh);
+  if (loss.tets == 0 && loss.points == 0) return;
+  const bool tets = loss.tets > 0;
+  std::string what =
+      tets ? "tets are flat or negative in single precision, the first at " + place_text(loss.first)
+           : "different points are equal to others in single precision";
+  if (tets && loss.points > 0) what += "; " + std::to_string(loss.points) + " points are equal to others";
+  report.diagnostics.push_back(
+      {.code = DiagnosticCode::single_precision,
+       .file = shown(line.outputs.mesh),
+       .what = what,
+       .count = tets ? loss.tets : loss.points,
+       .remedy = "move the input to the origin, or write another format than " + format.extension,
+       .places = tets ? std::vector<Vec3>{loss.first} : std::vector<Vec3>{}});
+}
+
 void find_unwritten_bins(const CommandLine& line, const TetFormatInfo& format, PrepareReport& report) {
   const bool in_parts = line.outputs.parts > 0;
   for (std::size_t d = 0; d < report.bins.size(); ++d) {
@@ -145,6 +177,8 @@ void find_unwritten(const CommandLine& line, const TetMesh& mesh, PrepareReport&
   if (line.outputs.no_boundary) note("faces of sheets", sheets_of(mesh).size(), ", as --no-boundary asks");
   if (!format.names) note("names of materials", mesh.material_names.size(), no_place);
   if (!format.fields) note("fields", mesh.point_fields.size() + mesh.cell_fields.size(), no_place);
+  find_unwritten_inner_faces(line, format, mesh, report);
+  find_rounded_tets(line, format, mesh, report);
   find_unwritten_bins(line, format, report);
   if (!format.patch_names)
     note("names of the sides of parted interfaces", 2 * report.parted.size(), no_place);

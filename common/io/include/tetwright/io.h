@@ -270,7 +270,18 @@ struct TetFormatInfo {
   bool parts;             ///< meshes in parts, see TetPartition
   BinsAs bins;            ///< of meshes that are not in parts
   bool moduli;            ///< elastic constants of bins
+  bool inner_surfaces;    ///< of these triangles also those between materials and of sheets
+  /// Coordinates are rounded to single precision, with the losses that single_precision_loss() finds.
+  bool single_precision;
 };
+
+/// Losses if the coordinates of a mesh are rounded to single precision.
+struct SinglePrecisionLoss {
+  std::size_t tets = 0;       ///< positive tets that become flat or negative, by exact signs
+  std::size_t points = 0;     ///< how many different points fewer there are
+  Vec3 first = Vec3::Zero();  ///< centre of the first such tet, input units
+};
+SinglePrecisionLoss single_precision_loss(const TetMesh& mesh);
 
 /// Tet mesh formats that can be written. The first one with an extension is its default.
 std::vector<TetFormatInfo> written_tet_formats();

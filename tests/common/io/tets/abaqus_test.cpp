@@ -121,8 +121,6 @@ TEST(Abaqus, BadInput) {
   expect_input_error(read_abaqus, nodes + tet + "*ELSET, ELSET=e, GENERATE\n1, 4000000000, 1\n", "line 9",
                      "more");
   expect_input_error(read_abaqus, nodes + tet + "*INCLUDE, INPUT=a.inp\n", "line 8", "INCLUDE");
-  expect_input_error(read_abaqus, nodes + tet + "*PART\n*PART\n", "line 9", "second");
-  expect_input_error(read_abaqus, nodes + tet + "*INSTANCE\n1, 0, 0\n", "line 9", "translated");
   const std::string whole = nodes + "*ELEMENT, TYPE=C3D4, ELSET=a\n1, 1, 2, 3, 10";
   for (std::size_t n = 0; n + 3 < whole.size(); ++n)
     (void)error_of<InputError>([&] { (void)read_abaqus(whole.substr(0, n), "f"); });
