@@ -372,6 +372,17 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
      .cause = "The file has groups of faces NAME:A and NAME:B that coincide: Tetwright parted them.",
      .remedy = "None needed: `check` looks at the joined mesh, where all its rules hold; `simplify` and "
                "`improve` part it again, with its cohesive elements."},
+    {.code = sides_apart,
+     .name = "sides-apart",
+     .severity = Severity::note,
+     .title = "sides of an interface that do not coincide",
+     .message = "N faces of the sides of the parted interface 'NAME' that do not coincide with one of the "
+                "other side "
+                "(the sides stay apart)",
+     .cause = "Two groups have the names of sides, NAME:A and NAME:B, but not the same faces: points moved, "
+              "or faces "
+              "are missing.",
+     .remedy = "None needed, if the sides moved apart in a simulation: they are ordinary boundaries then."},
     {.code = input_dropped,
      .name = "input-dropped",
      .severity = Severity::note,

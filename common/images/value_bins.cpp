@@ -9,6 +9,7 @@
 #include <map>
 #include <utility>
 
+#include "common/material_names.h"
 #include "common/message_text.h"
 #include "common/number_text.h"
 #include "common/unique_names.h"
@@ -21,12 +22,6 @@ namespace {
 double volume_of(const TetMesh& mesh, const Tet& t) {
   const Vec3& a = mesh.points[t[0]];
   return std::abs((mesh.points[t[1]] - a).cross(mesh.points[t[2]] - a).dot(mesh.points[t[3]] - a)) / 6;
-}
-
-std::string material_name(const TetMesh& mesh, MaterialTag tag) {
-  const auto known = mesh.material_names.find(tag);
-  return known != mesh.material_names.end() && !known->second.empty() ? known->second
-                                                                      : "material_" + std::to_string(tag);
 }
 
 /// Rounds to 12 digits, since the last ones of std::pow() depend on the machine.
@@ -74,7 +69,7 @@ TetBins bin_tets(const TetMesh& mesh, const std::string& field, const std::vecto
     high = std::max(high, values[t]);
   }
   UniqueNames names([](const std::string& name) { return name; });
-  for (const auto& [tag, range] : ranges) (void)names.add(material_name(mesh, tag));
+  for (const auto& [tag, range] : ranges) (void)names.add(material_name(mesh.material_names, tag));
   std::map<MaterialTag, std::vector<double>> bounds;
   for (const auto& [tag, range] : ranges) bounds[tag] = bounds_of(rule, range.first, range.second);
   // Index of each bin among all, also those without tets.
@@ -107,7 +102,7 @@ TetBins bin_tets(const TetMesh& mesh, const std::string& field, const std::vecto
     if (bin.tets == 0) continue;
     // Rounding must not bring the mean outside the bin.
     bin.mean = std::clamp(bin.volume > 0 ? bin.mean / bin.volume : plain[i], bin.low, bin.high);
-    bin.name = names.add(numbered(material_name(mesh, bin.material), bin.number));
+    bin.name = names.add(numbered(material_name(mesh.material_names, bin.material), bin.number));
     kept[i] = static_cast<std::uint32_t>(result.bins.size());
     result.bins.push_back(std::move(bin));
   }
@@ -120,10 +115,12 @@ void name_apart(const TetMesh& mesh, std::span<TetBins> divisions) {
   UniqueNames names([](const std::string& name) { return name; });
   for (const TetBins& bins : divisions)
     for (const ValueBin& bin : bins.bins)
-      if (const std::string name = material_name(mesh, bin.material); !names.has(name)) (void)names.add(name);
+      if (const std::string name = material_name(mesh.material_names, bin.material); !names.has(name))
+        (void)names.add(name);
   for (TetBins& bins : divisions)
     for (ValueBin& bin : bins.bins)
-      bin.name = names.add(numbered(material_name(mesh, bin.material) + "_" + bins.field, bin.number));
+      bin.name = names.add(
+          numbered(material_name(mesh.material_names, bin.material) + "_" + bins.field, bin.number));
 }
 
 std::size_t leading_division(std::span<const TetBins> divisions) {
@@ -178,7 +175,7 @@ std::string table_of_bins(const TetMesh& mesh, std::span<const TetBins> division
     for (const ValueBin& bin : bins.bins) {
       out += quoted(bin.name) + ",";
       if (several) out += quoted(bins.field) + ",";
-      out += quoted(material_name(mesh, bin.material)) + ",";
+      out += quoted(material_name(mesh.material_names, bin.material)) + ",";
       append_number(out, bin.number);
       for (const double x : {bin.low, bin.high}) add(std::isfinite(x), x);
       out += ',';

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <set>
 #include <type_traits>
 
 #include "common/files/file_names.h"
@@ -117,22 +116,6 @@ const typename Formats::value_type& need_format(const Formats& formats, const st
                    " for a " + kind_name(kind) + "; supported: " + known_extensions(kind, use));
 }
 
-TetFormatInfo info_of(const TetFormat& format) {
-  return {format.name,
-          format.extension,
-          format.names,
-          format.surfaces,
-          format.patch_names,
-          format.fields,
-          format.second_order,
-          format.wedges,
-          static_cast<bool>(format.part_files),
-          format.bins,
-          format.moduli,
-          format.inner_surfaces,
-          format.single_precision};
-}
-
 /// A format of several files replaces the path's extension by its own ones. The path must not have the
 /// extension of another format, since no such file would be written.
 void check_names_format(const std::string& path, const std::string& name) {
@@ -223,11 +206,7 @@ const Format& streamed(const Format& format, const std::string& name) {
 /// Checks the mesh by require_measurable(), and returns it.
 ReadTetMesh measurable(ReadTetMesh read, const std::string& name) {
   require_measurable(read.mesh, name);
-  if (!read.mesh.wedges.empty()) {
-    // The names of cohesive elements, which are written like materials.
-    const std::set<MaterialTag> used(read.mesh.materials.begin(), read.mesh.materials.end());
-    std::erase_if(read.mesh.material_names, [&](const auto& named) { return !used.contains(named.first); });
-  }
+  drop_names_of_cohesive(read.mesh);
   return read;
 }
 

@@ -119,7 +119,7 @@ class RuleParser {
       rule.normal = Vec3::Unit(axis[0] - 'x');
     else
       rule.normal = point(numbers(axis, 3, form), 0);
-    if (!(rule.normal.norm() > 0)) fail("has a normal of length 0");
+    if (!(rule.normal.stableNorm() > 0)) fail("has a normal of length 0");
     const std::vector<std::string_view> parts = fields(text.substr(equals + 1));
     if (parts.size() > 2)
       fail(std::string("has more than a coordinate and a tolerance, as in ") + form.example);
@@ -156,7 +156,7 @@ class RuleParser {
 
   WithNormal normal(const std::vector<double>& values) const {
     WithNormal rule{point(values, 0), values[3]};
-    if (!(rule.direction.norm() > 0)) fail("has a direction of length 0");
+    if (!(rule.direction.stableNorm() > 0)) fail("has a direction of length 0");
     if (!(rule.degrees >= 0 && rule.degrees <= 180)) fail("has an angle that is not from 0 to 180 degrees");
     return rule;
   }
@@ -219,8 +219,8 @@ class Measure {
   }
 
   std::vector<double> misses(const InPlane& rule) const {
-    const Vec3 unit = rule.normal.normalized();
-    double at = rule.coordinate / rule.normal.norm();
+    const Vec3 unit = rule.normal.stableNormalized();
+    double at = rule.coordinate / rule.normal.stableNorm();
     if (rule.at != InPlane::At::value) {
       const double sign = rule.at == InPlane::At::min ? 1 : -1;
       at = std::numeric_limits<double>::infinity();
@@ -255,9 +255,14 @@ class Measure {
   std::vector<double> misses(const WithNormal& rule) const {
     std::vector<double> result;
     result.reserve(boundary_.size());
+    const Vec3 direction = rule.direction.stableNormalized();
     for (std::size_t f = 0; f < boundary_.size(); ++f) {
       const Vec3 n = normal(f);
-      const double angle = portable_atan2_upper(n.cross(rule.direction).norm(), n.dot(rule.direction));
+      if (!(n.squaredNorm() > 0)) {
+        result.push_back(180);  // a face without area has no normal
+        continue;
+      }
+      const double angle = portable_atan2_upper(n.cross(direction).norm(), n.dot(direction));
       const double miss = angle * 180 / std::numbers::pi - rule.degrees;
       result.push_back(miss <= rounding_of_degrees ? 0 : miss);
     }
@@ -275,6 +280,8 @@ class Measure {
            rule.point)
               .norm());
       if (result[f] < result[nearest]) nearest = f;
+      // Only connected faces fulfil the rule, also where others touch the point.
+      result[f] = std::max(result[f], std::numeric_limits<double>::min());
     }
     if (boundary_.empty()) return result;
     for (const std::size_t f : connected_with(nearest)) result[f] = 0;
@@ -403,9 +410,7 @@ std::vector<SelectedFaces> select_faces(TetMesh& mesh, const std::vector<FaceSel
   }
   for (std::size_t s = 0; s < selections.size(); ++s)
     results[s].taken.assign(taken[s].begin(), taken[s].end());
-  std::set<InterfacePatch> used;
-  for (const InterfaceTriangle& t : mesh.interfaces) used.insert({t.pair(), t.patch});
-  std::erase_if(mesh.patch_groups, [&](const auto& group) { return !used.contains(group.first); });
+  drop_unused_groups(mesh);
   return results;
 }
 

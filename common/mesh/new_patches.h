@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "tetwright/error.h"
 #include "tetwright/tet_mesh.h"
@@ -35,5 +36,12 @@ class NewPatches {
   }
   std::map<MaterialPair, std::uint32_t> next_;
 };
+
+/// Removes the regions of patches without faces.
+inline void drop_unused_groups(TetMesh& mesh) {
+  std::set<InterfacePatch> used;
+  for (const InterfaceTriangle& t : mesh.interfaces) used.insert({t.pair(), t.patch});
+  std::erase_if(mesh.patch_groups, [&](const auto& group) { return !used.contains(group.first); });
+}
 
 }  // namespace tetwright

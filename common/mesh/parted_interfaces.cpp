@@ -2,10 +2,11 @@
 #include "tetwright/parted_interfaces.h"
 
 #include <algorithm>
-#include <memory>
+#include <map>
 #include <set>
 
 #include "common/mesh/disjoint_sets.h"
+#include "common/mesh/interface_sides.h"
 #include "common/mesh/new_patches.h"
 #include "tetwright/error.h"
 #include "tetwright/mesh_quality.h"
@@ -16,11 +17,6 @@ namespace tetwright {
 namespace {
 
 constexpr std::size_t max_joined_places = 3;  ///< as many as messages show
-
-Triangle ascending(Triangle ids) {
-  std::sort(ids.begin(), ids.end());
-  return ids;
-}
 
 /// The triangle seen from its other side.
 Triangle turned(const Triangle& ids) { return {ids[0], ids[2], ids[1]}; }
@@ -39,25 +35,9 @@ std::size_t corner_of(const Tet& tet, Index point) {
 bool points_out_of(const Triangle& ids, const Tet& tet) {
   for (const auto& corners : tet_faces) {
     const Triangle face = {tet[corners[0]], tet[corners[1]], tet[corners[2]]};
-    if (ascending(face) == ascending(ids)) return from_smallest(face) == from_smallest(ids);
+    if (ascending_ids(face) == ascending_ids(ids)) return from_smallest(face) == from_smallest(ids);
   }
   return false;
-}
-
-SurfaceRegion group_of(const TetMesh& mesh, const InterfaceTriangle& face) {
-  const auto known = mesh.patch_groups.find({face.pair(), face.patch});
-  return known == mesh.patch_groups.end() ? SurfaceRegion{} : known->second;
-}
-
-std::string material_name(const TetMesh& mesh, MaterialTag tag) {
-  const auto known = mesh.material_names.find(tag);
-  return known == mesh.material_names.end() || known->second.empty() ? "material_" + std::to_string(tag)
-                                                                     : known->second;
-}
-
-std::string name_of_pair(const TetMesh& mesh, const MaterialPair& pair) {
-  return material_name(mesh, pair.first) + "|" +
-         (pair.second ? material_name(mesh, *pair.second) : "outside");
 }
 
 /// Sorts the triangles as find_interfaces() does, the sheets after the others.
@@ -69,7 +49,7 @@ void sort_interfaces(std::vector<InterfaceTriangle>& interfaces) {
   });
   for (InterfaceTriangle& t : interfaces) t.ids = from_smallest(t.ids);
   std::sort(interfaces.begin(), interfaces.end(), [](const InterfaceTriangle& a, const InterfaceTriangle& b) {
-    return ascending(a.ids) < ascending(b.ids);
+    return ascending_ids(a.ids) < ascending_ids(b.ids);
   });
   append_sheets(interfaces, std::move(sheets));
 }
@@ -88,7 +68,10 @@ class Parter {
     renumber_interfaces();
     mesh_.tets = std::move(tets_);
     sort_interfaces(mesh_.interfaces);
-    if (midside_) renumber_midside_nodes();
+    if (midside_) {
+      renumber_midside_nodes();
+      for (const PartedFace& face : parted_faces_) pair_midside_nodes(face);
+    }
     std::vector<PartedInterface> result;
     for (auto& [name, parted] : results_) {
       std::sort(parted.pairs.begin(), parted.pairs.end());
@@ -103,7 +86,7 @@ class Parter {
     if (!face.other) return nullptr;
     for (const InterfaceToPart& rule : interfaces_)
       if (rule.materials ? !face.is_sheet() && *rule.materials == std::pair(face.material, *face.other)
-                         : group_of(mesh_, face).name == rule.group)
+                         : region_of(mesh_, face).name == rule.group)
         return &rule;
     return nullptr;
   }
@@ -112,8 +95,8 @@ class Parter {
     rules_.resize(mesh_.interfaces.size(), nullptr);
     for (std::size_t i = 0; i < rules_.size(); ++i)
       if ((rules_[i] = rule_for(mesh_.interfaces[i]))) {
-        parted_.push_back(ascending(mesh_.interfaces[i].ids));
-        pairs_of_[group_of(mesh_, mesh_.interfaces[i])].insert(mesh_.interfaces[i].pair());
+        parted_.push_back(ascending_ids(mesh_.interfaces[i].ids));
+        pairs_of_[region_of(mesh_, mesh_.interfaces[i])].insert(mesh_.interfaces[i].pair());
       }
     std::sort(parted_.begin(), parted_.end());
   }
@@ -177,7 +160,7 @@ class Parter {
   }
 
   const MeshFace* face_of(const Triangle& ids) const {
-    const Triangle key = ascending(ids);
+    const Triangle key = ascending_ids(ids);
     const auto face = std::lower_bound(faces_.begin(), faces_.end(), key,
                                        [](const MeshFace& f, const Triangle& t) { return f.ids < t; });
     return face != faces_.end() && face->ids == key ? &*face : nullptr;
@@ -229,15 +212,17 @@ class Parter {
       mesh_.wedges.push_back({a[0], a[1], a[2], b[0], b[1], b[2]});
       parted.degenerate_wedges += degenerate;
     }
+    if (midside_) parted_faces_.push_back({a, b, &parted});
     const std::array<std::uint16_t, 2> patches = patches_of(face, parted);
     after.push_back({a, face.material, std::nullopt, patches[0]});
     after.push_back({turned(b), *face.other, std::nullopt, patches[1]});
   }
 
   PartedInterface& result_for(const InterfaceTriangle& face, const InterfaceToPart& rule) {
-    const SurfaceRegion group = group_of(mesh_, face);
-    std::string name = rule.materials ? name_of_pair(mesh_, face.pair()) : group.name;
-    if (!rule.materials && pairs_of_[group].size() > 1) name += " " + name_of_pair(mesh_, face.pair());
+    const SurfaceRegion& group = region_of(mesh_, face);
+    std::string name = rule.materials ? interface_name(mesh_, face.material, *face.other) : group.name;
+    if (!rule.materials && pairs_of_[group].size() > 1)
+      name += " " + interface_name(mesh_, face.material, *face.other);
     PartedInterface& parted = results_[{name, face.pair()}];
     if (rule.materials && !group.name.empty() &&
         std::find(parted.renamed_groups.begin(), parted.renamed_groups.end(), group.name) ==
@@ -247,10 +232,10 @@ class Parter {
     parted.name = name;
     parted.cohesive = rule.cohesive;
     if (face.is_sheet())
-      parted.sides = {name + ":back", name + ":front"};
+      parted.sides = {name + ":" + sheet_sides[0], name + ":" + sheet_sides[1]};
     else
-      parted.sides = {name + ":" + material_name(mesh_, face.material),
-                      name + ":" + material_name(mesh_, *face.other)};
+      parted.sides = {name + ":" + unique_material_name(mesh_.material_names, face.material),
+                      name + ":" + unique_material_name(mesh_.material_names, *face.other)};
     return parted;
   }
 
@@ -275,6 +260,26 @@ class Parter {
     *midside_ = std::move(nodes);
   }
 
+  /// A face that was parted, corner by corner.
+  struct PartedFace {
+    Triangle first, second;
+    PartedInterface* of;
+  };
+
+  /// Number of the node on an edge, after those of the points.
+  Index midside_node(Index a, Index b) const {
+    const auto edge = std::lower_bound(midside_->edges.begin(), midside_->edges.end(), ascending_edge(a, b));
+    return static_cast<Index>(mesh_.points.size() + static_cast<std::size_t>(edge - midside_->edges.begin()));
+  }
+
+  void pair_midside_nodes(const PartedFace& face) const {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index first = midside_node(face.first[k], face.first[(k + 1) % 3]),
+                  second = midside_node(face.second[k], face.second[(k + 1) % 3]);
+      if (first != second) face.of->pairs.push_back({first, second});
+    }
+  }
+
   TetMesh& mesh_;
   MidsideNodes* midside_;
   std::span<const InterfaceToPart> interfaces_;
@@ -288,226 +293,7 @@ class Parter {
   std::vector<Tet> tets_;           ///< with the new points
   std::map<std::pair<std::string, MaterialPair>, PartedInterface> results_;
   std::map<InterfacePatch, std::array<std::uint16_t, 2>> patches_of_;
-};
-
-using FaceCoordinates = std::array<std::array<double, 3>, 3>;
-
-std::array<double, 3> coordinates_of(const Vec3& p) { return {p[0], p[1], p[2]}; }
-
-/// Corners of a face in the order of their coordinates.
-Triangle by_coordinates(const TetMesh& mesh, Triangle ids) {
-  std::sort(ids.begin(), ids.end(), [&](Index a, Index b) {
-    return coordinates_of(mesh.points[a]) < coordinates_of(mesh.points[b]);
-  });
-  return ids;
-}
-
-FaceCoordinates coordinates_of(const TetMesh& mesh, const Triangle& ids) {
-  return {coordinates_of(mesh.points[ids[0]]), coordinates_of(mesh.points[ids[1]]),
-          coordinates_of(mesh.points[ids[2]])};
-}
-
-class Joiner {
- public:
-  /// \param mesh find() leaves it unchanged
-  explicit Joiner(TetMesh& mesh) : mesh_(mesh), points_(mesh.points.size()) {}
-
-  /// Finds the sides that coincide.
-  /// \return their faces, as indices into TetMesh::interfaces
-  std::vector<std::size_t> find() {
-    collect_sides();
-    std::vector<std::size_t> found;
-    for (const auto& [name, sides] : sides_)
-      if (sides.size() == 2 && sides[0]->is_sheet == sides[1]->is_sheet &&
-          sides[0]->is_sheet == (sides[0]->material == sides[1]->material) &&
-          join_sides(name, *sides[0], *sides[1]))
-        for (const Side* side : sides) found.insert(found.end(), side->faces.begin(), side->faces.end());
-    std::sort(found.begin(), found.end());
-    return found;
-  }
-
-  JoinedInterfaces join() {
-    (void)find();
-    if (faces_.empty() && mesh_.wedges.empty()) return {};
-    find_cohesive();
-    merge_points();
-    recompute_interfaces();
-    return std::move(result_);
-  }
-
- private:
-  /// A group of boundary faces whose name says that it is the side of a parted interface.
-  struct Side {
-    MaterialTag material;
-    bool is_sheet;                   ///< whether it is called the back or front of a sheet
-    std::vector<std::size_t> faces;  ///< indices into TetMesh::interfaces
-  };
-  /// A face of the joined mesh that was parted.
-  struct JoinedFace {
-    Triangle ids;  ///< of the first side before points are merged, its normal pointing out
-    MaterialTag first, second;
-    std::size_t interface;  ///< index into names
-  };
-
-  void collect_sides() {
-    std::map<std::string, Side> groups;
-    std::set<std::string> of_several;  // groups with several materials
-    for (std::size_t i = 0; i < mesh_.interfaces.size(); ++i) {
-      const InterfaceTriangle& face = mesh_.interfaces[i];
-      if (face.other) continue;
-      const std::string name = group_of(mesh_, face).name;
-      if (name.find(':') == std::string::npos) continue;
-      Side& side = groups.try_emplace(name, Side{face.material, false, {}}).first->second;
-      side.faces.push_back(i);
-      if (side.material != face.material) of_several.insert(name);
-    }
-    for (auto& [name, group] : groups) {
-      if (of_several.contains(name)) continue;
-      const std::string material = material_name(mesh_, group.material);
-      for (const std::string& suffix : {std::string("back"), std::string("front"), material}) {
-        if (name.size() <= suffix.size() + 1 || !name.ends_with(":" + suffix)) continue;
-        group.is_sheet = suffix != material;
-        own_.push_back(std::make_unique<Side>(std::move(group)));
-        sides_[name.substr(0, name.size() - suffix.size() - 1)].push_back(own_.back().get());
-        break;
-      }
-    }
-  }
-
-  /// Joins the faces of two sides.
-  /// \return false if they do not coincide
-  bool join_sides(const std::string& name, const Side& a, const Side& b) {
-    if (a.faces.size() != b.faces.size()) return false;
-    std::map<FaceCoordinates, std::size_t> by_place;
-    for (const std::size_t f : a.faces)
-      if (!by_place.emplace(place_of(f), f).second) return false;
-    std::vector<std::pair<std::size_t, std::size_t>> pairs;
-    for (const std::size_t f : b.faces) {
-      const auto same = by_place.find(place_of(f));
-      if (same == by_place.end()) return false;
-      pairs.emplace_back(same->second, f);
-      by_place.erase(same);
-    }
-    const std::size_t interface = result_.names.size();
-    bool named_after_materials = true;
-    for (const auto& [f, g] : pairs) {
-      const InterfaceTriangle &first = mesh_.interfaces[f], &second = mesh_.interfaces[g];
-      const Triangle p = by_coordinates(mesh_, first.ids), q = by_coordinates(mesh_, second.ids);
-      for (std::size_t k = 0; k < 3; ++k) points_.unite(p[k], q[k]);
-      const bool swapped = second.material < first.material;
-      const InterfaceTriangle& smaller = swapped ? second : first;
-      const MaterialTag larger = swapped ? first.material : second.material;
-      faces_.push_back({smaller.ids, smaller.material, larger, interface});
-      wedge_faces_[place_of(f)] = interface;
-      named_after_materials &=
-          smaller.material != larger && name == name_of_pair(mesh_, {smaller.material, larger});
-    }
-    InterfaceToPart part;
-    if (named_after_materials)
-      part.materials = std::pair(faces_.back().first, faces_.back().second);
-    else
-      part.group = name;
-    result_.parts.push_back(part);
-    result_.names.push_back(name);
-    return true;
-  }
-
-  FaceCoordinates place_of(std::size_t face) const {
-    return coordinates_of(mesh_, by_coordinates(mesh_, mesh_.interfaces[face].ids));
-  }
-
-  void find_cohesive() {
-    for (const Wedge& wedge : mesh_.wedges) {
-      const Triangle first{wedge[0], wedge[1], wedge[2]};
-      const auto known = wedge_faces_.find(coordinates_of(mesh_, by_coordinates(mesh_, first)));
-      if (known == wedge_faces_.end())
-        ++result_.other_wedges;
-      else
-        result_.parts[known->second].cohesive = true;
-    }
-    mesh_.wedges.clear();
-  }
-
-  void merge_points() {
-    new_index_.resize(mesh_.points.size());
-    Index kept = 0;
-    for (Index p = 0; p < mesh_.points.size(); ++p) {
-      if (!points_.is_root(p)) {
-        new_index_[p] = new_index_[points_.root(p)];
-        continue;
-      }
-      mesh_.points[kept] = Vec3(mesh_.points[p]);
-      for (MeshField& field : mesh_.point_fields) {
-        const auto n = static_cast<std::size_t>(field.components);
-        std::copy_n(field.values.begin() + static_cast<std::ptrdiff_t>(p * n), n,
-                    field.values.begin() + static_cast<std::ptrdiff_t>(kept * n));
-      }
-      new_index_[p] = kept++;
-    }
-    result_.points = mesh_.points.size() - kept;
-    mesh_.points.resize(kept);
-    for (MeshField& field : mesh_.point_fields)
-      field.values.resize(static_cast<std::size_t>(field.components) * kept);
-    for (Tet& tet : mesh_.tets)
-      for (Index& p : tet) p = new_index_[p];
-  }
-
-  Triangle renumbered(const Triangle& ids) const {
-    return {new_index_[ids[0]], new_index_[ids[1]], new_index_[ids[2]]};
-  }
-
-  void recompute_interfaces() {
-    std::map<Triangle, InterfaceTriangle> before;
-    std::vector<InterfaceTriangle> sheets;
-    std::set<Triangle> parted;
-    for (const JoinedFace& face : faces_) parted.insert(ascending(renumbered(face.ids)));
-    for (InterfaceTriangle t : mesh_.interfaces) {
-      t.ids = renumbered(t.ids);
-      if (parted.contains(ascending(t.ids))) continue;
-      if (t.is_sheet())
-        sheets.push_back(t);
-      else
-        before[ascending(t.ids)] = t;
-    }
-    NewPatches patches(mesh_);
-    std::map<std::pair<std::size_t, MaterialPair>, std::uint16_t> patch_of;
-    for (const JoinedFace& face : faces_) {
-      const MaterialPair pair{face.first, face.second};
-      const InterfaceToPart& part = result_.parts[face.interface];
-      const auto [known, added] = patch_of.try_emplace({face.interface, pair}, std::uint16_t{0});
-      if (added) {
-        known->second = patches.add(pair);
-        if (!part.materials) mesh_.patch_groups[{pair, known->second}] = {0, part.group};
-      }
-      const InterfaceTriangle t{renumbered(face.ids), face.first, face.second, known->second};
-      if (t.is_sheet())
-        sheets.push_back(t);
-      else
-        before[ascending(t.ids)] = t;
-    }
-    mesh_.interfaces = find_interfaces(mesh_);
-    for (InterfaceTriangle& t : mesh_.interfaces)
-      if (const auto known = before.find(ascending(t.ids)); known != before.end())
-        t.patch = known->second.patch;
-    append_sheets(mesh_.interfaces, std::move(sheets));
-    drop_unused_groups();
-  }
-
-  /// Drops groups without faces, such as those of the sides.
-  void drop_unused_groups() {
-    std::set<InterfacePatch> used;
-    for (const InterfaceTriangle& t : mesh_.interfaces) used.insert({t.pair(), t.patch});
-    std::erase_if(mesh_.patch_groups, [&](const auto& group) { return !used.contains(group.first); });
-  }
-
-  TetMesh& mesh_;
-  DisjointSets points_;
-  std::vector<std::unique_ptr<Side>> own_;
-  std::map<std::string, std::vector<const Side*>> sides_;  ///< by the name of their interface
-  std::vector<JoinedFace> faces_;
-  std::map<FaceCoordinates, std::size_t> wedge_faces_;  ///< interfaces of joined faces
-  std::vector<Index> new_index_;
-  JoinedInterfaces result_;
+  std::vector<PartedFace> parted_faces_;  ///< only with midside nodes
 };
 
 }  // namespace
@@ -516,8 +302,6 @@ std::vector<PartedInterface> part_interfaces(TetMesh& mesh, MidsideNodes* midsid
                                              std::span<const InterfaceToPart> interfaces) {
   return Parter(mesh, midside, interfaces).part();
 }
-
-JoinedInterfaces join_parted_interfaces(TetMesh& mesh) { return Joiner(mesh).join(); }
 
 std::string table_of_pairs(std::span<const PartedInterface> parted) {
   std::string out = "interface,first,second\n";
@@ -529,41 +313,6 @@ std::string table_of_pairs(std::span<const PartedInterface> parted) {
              std::to_string(std::uint64_t{second} + 1) + '\n';
   }
   return out;
-}
-
-std::vector<std::size_t> parted_faces(const TetMesh& mesh) {
-  return Joiner(const_cast<TetMesh&>(mesh)).find();  // NOLINT(cppcoreguidelines-pro-type-const-cast)
-}
-
-bool is_cohesive(const Wedge& wedge, std::span<const Vec3> points) {
-  bool apart = false;
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (points[wedge[k]] != points[wedge[k + 3]]) return false;
-    apart |= wedge[k] != wedge[k + 3];
-  }
-  return apart;
-}
-
-std::map<std::string, std::vector<std::size_t>> wedges_by_interface(const TetMesh& mesh) {
-  std::map<std::string, std::vector<std::size_t>> result;
-  if (mesh.wedges.empty()) return result;
-  std::map<Triangle, std::string> names;
-  for (const InterfaceTriangle& face : mesh.interfaces)
-    if (!face.other) names[ascending(face.ids)] = group_of(mesh, face).name;
-  for (std::size_t w = 0; w < mesh.wedges.size(); ++w) {
-    const Wedge& wedge = mesh.wedges[w];
-    const auto side = names.find(ascending({wedge[0], wedge[1], wedge[2]}));
-    const auto other = names.find(ascending({wedge[3], wedge[4], wedge[5]}));
-    std::string name = "cohesive";
-    if (side != names.end() && other != names.end()) {
-      const std::string &a = side->second, &b = other->second;
-      // The longest NAME of sides NAME:A and NAME:B.
-      for (std::size_t colon = a.find(':'); colon != std::string::npos; colon = a.find(':', colon + 1))
-        if (colon > 0 && b.compare(0, colon + 1, a, 0, colon + 1) == 0) name = a.substr(0, colon);
-    }
-    result[name].push_back(w);
-  }
-  return result;
 }
 
 }  // namespace tetwright

@@ -51,44 +51,58 @@ std::array<Vec3, 3> directions_in_plane(const Vec3& normal) {
   return {u, normal.cross(u), Vec3::Zero()};
 }
 
-/// The planes of the boundary triangles at a point.
+/// The flat faces of the boundary at a point.
 struct BoundaryPlanes {
-  static constexpr std::size_t max_count = 3;
-  std::array<Vec3, max_count> normals;  ///< unit vectors
-  std::size_t count = 0;                ///< 0: no boundary, or more than max_count planes
+  struct Plane {
+    Vec3 normal;  ///< unit vector
+    std::size_t triangles;
+  };
+  static constexpr std::size_t max_count = 8;  ///< more are a curved surface, whatever they share
+  std::array<Plane, max_count> planes;
+  std::size_t count = 0;
 };
 
-/// Finds the planes of which the boundary at the centre consists: one in a flat face, two on a straight edge,
-/// three in a corner. A curved surface has as many as triangles.
+/// Finds the flat faces of the boundary at the centre: one inside a flat face, two on a straight edge, three
+/// in a corner. A curved surface has as many planes as triangles; where it meets a flat face, that one
+/// counts, since several triangles share its plane. A single triangle of a flat face does not tell.
 BoundaryPlanes planes_of_boundary(const Star& star) {
-  BoundaryPlanes planes;
+  BoundaryPlanes found;
+  const auto end = [&] { return found.planes.begin() + static_cast<std::ptrdiff_t>(found.count); };
   for (const Star::InterfaceTriangle& s : star.interface_triangles) {
     if (s.inside != outside_id && s.across != outside_id) continue;
     const Vec3 p = star.positions[s.first] - star.centre_position,
                q = star.positions[s.second] - star.centre_position;
     const Vec3 normal = p.cross(q);
     if (!(normal.squaredNorm() > 0)) continue;
-    const bool known =
-        std::any_of(planes.normals.begin(),
-                    planes.normals.begin() + static_cast<std::ptrdiff_t>(planes.count), [&](const Vec3& n) {
-                      return std::max(std::fabs(n.dot(p)), std::fabs(n.dot(q))) <= tolerance::flat_patch;
-                    });
-    if (known) continue;
-    if (planes.count == BoundaryPlanes::max_count) return {};
-    planes.normals[planes.count++] = normal.normalized();
+    const auto known = std::find_if(found.planes.begin(), end(), [&](const BoundaryPlanes::Plane& plane) {
+      return std::max(std::fabs(plane.normal.dot(p)), std::fabs(plane.normal.dot(q))) <=
+             tolerance::flat_patch;
+    });
+    if (known != end()) {
+      ++known->triangles;
+      continue;
+    }
+    if (found.count == BoundaryPlanes::max_count) return {};
+    found.planes[found.count++] = {normal.normalized(), 1};
   }
-  return planes;
+  constexpr std::size_t planes_of_corner = 3;
+  if (found.count > planes_of_corner)
+    found.count = static_cast<std::size_t>(
+        std::remove_if(found.planes.begin(), end(),
+                       [](const BoundaryPlanes::Plane& plane) { return plane.triangles == 1; }) -
+        found.planes.begin());
+  return found;
 }
 
 /// Unit vectors along all planes.
-/// \param count their number; 0 where three planes meet in a point
-std::array<Vec3, 3> directions_in_planes(const BoundaryPlanes& planes, int& count) {
-  if (planes.count == 1) {
+/// \param count their number; 0 where more than two planes meet in a point
+std::array<Vec3, 3> directions_in_planes(const BoundaryPlanes& found, int& count) {
+  if (found.count == 1) {
     count = 2;
-    return directions_in_plane(planes.normals[0]);
+    return directions_in_plane(found.planes[0].normal);
   }
-  const Vec3 along = planes.normals[0].cross(planes.normals[1]).normalized();
-  count = planes.count == 2 ? 1 : 0;
+  const Vec3 along = found.planes[0].normal.cross(found.planes[1].normal).normalized();
+  count = found.count == 2 ? 1 : 0;
   return {along, Vec3::Zero(), Vec3::Zero()};
 }
 

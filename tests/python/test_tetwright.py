@@ -419,7 +419,7 @@ def check_linkage(module):
     needed = {line.split("[lib")[1].split(".so")[0].split("-")[0] for line in listing.splitlines() if "(NEEDED)" in line and "[lib" in line}
     of_systems = {"c", "m", "gcc_s", "stdc++"}
     named = {"openvdb", "tbb", "boost_iostreams", "Imath", "hdf5_serial", "z", "deflate", "lz4", "lzma", "pugixml", "scotch",
-             "scotcherr", "zip", "zstd", "blosc", "tiff", "gdcmCommon", "gdcmDICT", "gdcmDSED", "gdcmMSFF"}
+             "scotcherr", "zip", "zstd", "blosc", "tiff", "gdcmCommon", "gdcmDICT", "gdcmDSED", "gdcmMSFF", "netcdf"}
     assert needed <= of_systems | named, needed - of_systems - named
     found = subprocess.run(["ldd", module], capture_output=True, text=True, check=True).stdout
     assert "not found" not in found and "tetwright" not in found.replace(str(module), ""), found

@@ -40,8 +40,7 @@ void add_selections(CLI::App& app, CommandLine& c) {
          "'and': "
          "plane:z=min,0.5% (corners within 0.5 % of the diagonal; or plane:A,B,C=D,T), box:X,Y,Z,X,Y,Z, "
          "sphere:X,Y,Z,R, cylinder:X,Y,Z,X,Y,Z,R, normal:X,Y,Z,DEGREES, patch-at:X,Y,Z (the nearest face, "
-         "and all "
-         "up to creases); repeatable")
+         "and all up to creases); repeatable")
       ->expected(1)
       ->type_name("NAME=RULE")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -50,8 +49,9 @@ void add_selections(CLI::App& app, CommandLine& c) {
 void add_interface_options(CLI::App& app, CommandLine& c) {
   add_requests(
       app, c, "--split-interface", false,
-      "Double the points between the materials A and B, on a sheet or a group of faces NAME, or on all "
-      "interfaces, so that both sides have faces of their own: A|B:A and A|B:B; a table of the pairs "
+      "Double the points between the materials A and B, on a sheet or a group of faces NAME, or with all on "
+      "every interface between materials, so that both sides have faces of their own: A|B:A and A|B:B; a "
+      "table of the pairs "
       "of points is written beside the mesh; repeatable");
   add_requests(app, c, "--cohesive", true,
                "The same, with wedges without volume between the two sides (COH3D6 in .inp, wedges in .vtu "

@@ -54,10 +54,9 @@ class ProcessTeam {
   /// \param content adds the contents; called in the leader
   /// \return number of members
   /// \pre writes_hdf5()
-  /// \throws OutputError if any of them does not see it, or cannot sync it to the disk. If one fails while
-  /// others
-  ///   may wait for it, all processes end with the status of that error, the file is removed, and that one
-  ///   prints why
+  /// \throws OutputError if any of them does not see it, or cannot sync it to the disk. If one fails
+  ///   while others may wait for it, all processes end with the status of that error, the file is removed,
+  ///   and that one prints why
   virtual std::size_t write_hdf5(const std::string& temporary, const std::string& path,
                                  const std::function<void(Hdf5Writer&)>& content) = 0;
   /// Tells the leader that this member, another one, has failed. May return before the leader knows.

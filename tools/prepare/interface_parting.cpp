@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <iterator>
 #include <optional>
 #include <set>
 #include <system_error>
@@ -90,8 +89,7 @@ void report_missing(const InterfaceRequest& request, const TetMesh& mesh, const 
       {.code = DiagnosticCode::interface_not_found,
        .what = std::string(option_of(request)) + " " + in_quotes(request.faces) + ": no faces to part; " +
                (there.empty() ? "the mesh has no interface between materials and no sheet"
-                              : "there are " + quoted_list(there)),
-       .count = 1});
+                              : "there are " + quoted_list(there))});
 }
 
 void report_parted(const std::vector<PartedInterface>& parted, PrepareReport& report) {
@@ -130,16 +128,16 @@ void part_result(Prepared& result, std::span<const InterfaceToPart> joined, Prep
   TetMesh& mesh = result.mesh;
   std::vector<InterfaceToPart> faces;
   const InnerFaces inner(mesh);
-  for (const bool cohesive : {true, false}) {
-    for (const InterfaceRequest& request : run.options.parting) {
-      if (request.cohesive != cohesive) continue;
-      const std::vector<InterfaceToPart> found = faces_of(request, mesh, inner);
-      if (found.empty()) report_missing(request, mesh, inner, run.report);
-      faces.insert(faces.end(), found.begin(), found.end());
-    }
-    std::copy_if(joined.begin(), joined.end(), std::back_inserter(faces),
-                 [&](const InterfaceToPart& part) { return part.cohesive == cohesive; });
+  for (const InterfaceRequest& request : run.options.parting) {
+    const std::vector<InterfaceToPart> found = faces_of(request, mesh, inner);
+    if (found.empty()) report_missing(request, mesh, inner, run.report);
+    faces.insert(faces.end(), found.begin(), found.end());
   }
+  faces.insert(faces.end(), joined.begin(), joined.end());
+  // The first one with a face decides: cohesive ones, and groups before the materials that they lie between.
+  std::stable_sort(faces.begin(), faces.end(), [](const InterfaceToPart& a, const InterfaceToPart& b) {
+    return std::pair(!a.cohesive, a.materials.has_value()) < std::pair(!b.cohesive, b.materials.has_value());
+  });
   if (!faces.empty()) run.report.parted = part_interfaces(mesh, run.midside ? &*run.midside : nullptr, faces);
   report_parted(run.report.parted, run.report);
   if (run.report.result) run.report.result->points = mesh.points.size();

@@ -11,8 +11,7 @@ namespace {
 
 void report_empty(const SelectedFaces& selected, PrepareReport& report) {
   Diagnostic d{.code = DiagnosticCode::selection_empty,
-               .what = "--select " + selected.name + ": no face; " + selected.nearest,
-               .count = 1};
+               .what = "--select " + selected.name + ": no face; " + selected.nearest};
   if (selected.nearest_place) {
     d.what += " at " + place_text(*selected.nearest_place);
     d.places.push_back(*selected.nearest_place);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "common/message_text.h"
 #include "tetwright/error.h"
 #include "tetwright/io.h"
 #include "tetwright/mesh_quality.h"
@@ -68,6 +69,18 @@ std::vector<InterfaceToPart> join_read_interfaces(ReadTetMesh& read, const std::
     read.dropped.push_back(
         {"cohesive elements between faces whose groups are not the sides of a parted interface",
          joined.other_wedges});
+  for (const auto& [field, points] : joined.lost_values)
+    read.dropped.push_back(
+        {"values of the point field " + in_quotes(field) +
+             " on the second sides of parted interfaces, which differ from those of the first",
+         points});
+  for (const auto& [name, faces] : joined.apart)
+    report.diagnostics.push_back({.code = DiagnosticCode::sides_apart,
+                                  .file = file,
+                                  .what = "faces of the sides of the parted interface " + in_quotes(name) +
+                                          " that do not coincide with one of the other side",
+                                  .count = faces,
+                                  .done = "the sides stay apart"});
   if (!joined.parts.empty() && with_note)
     report.diagnostics.push_back(
         {.code = DiagnosticCode::interfaces_joined,

@@ -150,7 +150,7 @@ void write_mesh_files(Mesh& mesh, const std::string& path, const std::string& fo
   if (!boundary.empty()) write_interfaces(mesh.mesh, boundary, &files);
   if (const std::string table = bins_table_of(line); !table.empty())
     files.write(table, table_of_bins(mesh.mesh, mesh.bins));
-  if (const std::string table = pairs_table_of(line); !table.empty())
+  if (const std::string table = pairs_table_of(line, !mesh.parted.empty()); !table.empty())
     files.write(table, table_of_pairs(mesh.parted));
   files.commit();
   PrepareReport report;

@@ -114,6 +114,7 @@ enum class DiagnosticCode : std::uint8_t {
   tets_inverted,
   patch_faces_lost,
   interfaces_joined,
+  sides_apart,
   // Files.
   input_dropped,
   input_restored,

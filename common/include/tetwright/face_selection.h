@@ -46,8 +46,8 @@ struct WithNormal {
   double degrees;  ///< 0 to 180
 };
 
-/// The face nearest to a point, and all that are connected with it by edges inside its patch: up to creases
-/// and the borders of groups.
+/// The face nearest to a point (of equally near ones the first in the mesh), and all that are connected with
+/// it by edges inside its patch: up to creases and the borders of groups.
 struct PatchAt {
   Vec3 point;
 };
@@ -66,11 +66,11 @@ struct FaceSelection {
 
 /// Parses rules that are joined by "and":
 ///
-/// - `plane:z=min,0.5%`: corners within 0.5 % of the diagonal of the smallest z. Axes are x, y and z, or a
-/// normal
-///   A,B,C; coordinates are numbers, min or max; without a tolerance it is 0.1 %
+/// - `plane:z=min,0.5%`: corners within 0.5 % of the diagonal of the smallest z. The axis is x, y, z or a
+///   normal A,B,C; the coordinate a number, min or max; the tolerance a length or percentage, by default 0.1
+///   %
 /// - `box:X,Y,Z,X,Y,Z`: corners in the box between these two points
-/// - `sphere:X,Y,Z,R`, `cylinder:X,Y,Z,X,Y,Z,R`: corners in the ball, or the cylinder between two points
+/// - `sphere:X,Y,Z,R`, `cylinder:X,Y,Z,X,Y,Z,R`: corners in the ball, or in the cylinder between two points
 /// - `normal:X,Y,Z,D`: normals out of the mesh within D degrees of this direction
 /// - `patch-at:X,Y,Z`: the nearest face, and those connected with it up to creases and other groups
 ///

@@ -39,7 +39,8 @@ struct PartedInterface {
   std::vector<Vec3> joined_places = {};  ///< centres of the first few of these, input units
   /// Wedges with one or two edges of a single point, at the border of what is parted.
   std::size_t degenerate_wedges = 0;
-  /// Points with equal coordinates on the first and the second side, in ascending order of the first.
+  /// Points with equal coordinates on the first and the second side, in ascending order of the first. With
+  /// midside nodes also these, numbered after the points.
   std::vector<std::array<Index, 2>> pairs = {};
 };
 
@@ -56,7 +57,7 @@ struct PartedInterface {
 /// \param interfaces the first one with a face decides on it
 /// \return what was parted: for each group and each pair of materials with faces, by name
 /// \pre indices in range; each face has at most two tets
-/// \throws OutputError if a material would have more than 65,535 patches
+/// \throws OutputError if a material would have more than 65,536 patches
 std::vector<PartedInterface> part_interfaces(TetMesh& mesh, MidsideNodes* midside,
                                              std::span<const InterfaceToPart> interfaces);
 
@@ -67,12 +68,18 @@ struct JoinedInterfaces {
   std::size_t points = 0;              ///< number of points that were joined with another
   /// Wedges between faces that are not both in named groups of a parted interface; they are removed.
   std::size_t other_wedges = 0;
+  /// Names of point fields, and in how many joined points their values differed from that of the first copy.
+  std::vector<std::pair<std::string, std::size_t>> lost_values;
+  /// Interfaces whose groups have the names of sides, but do not coincide, and their faces without a
+  /// counterpart. They stay apart.
+  std::vector<std::pair<std::string, std::size_t>> apart;
 };
 
-/// Undoes part_interfaces(): finds pairs of groups of boundary faces with the names NAME:A and NAME:B whose
-/// faces coincide one by one, with exactly equal coordinates, and joins their points. Their faces become the
-/// interface again, in the group NAME unless that is the name of its materials. Other faces that coincide
-/// stay apart. Wedges are removed. A joined point has the field values of its first copy. O(n log n).
+/// Undoes part_interfaces(): finds pairs of groups of boundary faces with the names NAME:A and NAME:B of
+/// sides whose faces coincide one by one, with exactly equal coordinates, and joins their points. Their faces
+/// become the interface again, in the group NAME unless that is the name of its materials. Other faces that
+/// coincide stay apart. Wedges are removed. A joined point has the field values of its first copy. O(n log
+/// n).
 ///
 /// \param mesh changed if there is such a pair, or a wedge; then its interfaces are recomputed
 /// \pre indices in range; mesh.interfaces are faces of tets

@@ -24,7 +24,7 @@ class Hdf5Writer {
   virtual void add_attribute(const std::string& group, const std::string& name, const std::string& text) = 0;
   virtual void add_attribute(const std::string& group, const std::string& name,
                              std::span<const std::int64_t> values) = 0;
-  /// Adds a dataset with `columns` numbers in each row, compressed by zlib.
+  /// Adds a dataset with `columns` numbers in each row.
   /// \param name path of a group that was added, and a name without slashes; or only the latter
   /// \param columns 0: a list, with one dimension
   virtual void add(const std::string& name, const Hdf5Numbers& values, std::size_t columns) = 0;

@@ -28,9 +28,8 @@ enum class NetcdfType : std::uint8_t { text, int32, int64, real };
 /// are gone, since the library is not safe for concurrent use.
 class NetcdfWriter {
  public:
-  /// \param min_bytes for which memory is reserved. The file gets this size at least, so it must not be
-  /// more
-  ///   than the variables take
+  /// \param min_bytes for which memory is reserved. The file gets this size at least, so it must
+  ///   not exceed what the variables take
   /// \throws OutputError without has_netcdf(), or without the memory
   NetcdfWriter(NetcdfForm form, std::size_t min_bytes);
   ~NetcdfWriter();

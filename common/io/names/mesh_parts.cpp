@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "common/material_names.h"
 #include "common/mesh/boundary_groups.h"
 #include "common/mesh/face_buckets.h"
 #include "common/number_text.h"
@@ -19,11 +20,6 @@
 namespace tetwright {
 
 namespace {
-
-std::string name_of_tag(MaterialTag tag, const std::map<MaterialTag, std::string>& names) {
-  const auto known = names.find(tag);
-  return known != names.end() && !known->second.empty() ? known->second : "material_" + std::to_string(tag);
-}
 
 /// Whether two triangles with the same vertices have the same orientation.
 bool equally_oriented(const Triangle& a, const Triangle& b) {
@@ -47,7 +43,7 @@ MeshParts names_of_parts(const TetMesh& mesh, const NameRules& rules) {
   std::map<MaterialTag, std::string> written;
   for (const auto& [own, number] : numbers_of(tags_of(mesh.materials))) {
     const auto tag = static_cast<MaterialTag>(own);
-    written[tag] = of_materials.add(name_of_tag(tag, mesh.material_names));
+    written[tag] = of_materials.add(material_name(mesh.material_names, tag));
     parts.materials.push_back({tag, number, written[tag], {}});
   }
 

@@ -50,7 +50,7 @@ AbaqusPlacement AbaqusPlacement::read(AbaqusLines& in) {
   if (length == 0) in.fail("the axis of the rotation has no length: both of its points are " + place_text(a));
   if (!std::isfinite(length)) in.fail("the points of the rotation's axis are too far apart");
   const auto [cosine, sine] = portable_cosine_sine(r[6]);
-  if (cosine != 1) placement.rotation = {a, Vec3(axis / length).normalized(), cosine, sine};
+  if (sine != 0 || cosine != 1) placement.rotation = {a, Vec3(axis / length).normalized(), cosine, sine};
   if (in.next_data())
     in.fail("a third line of an *INSTANCE, which has a translation and a rotation; found " +
             in_quotes(in.text()));
@@ -317,6 +317,14 @@ std::vector<const AbaqusPart*> AbaqusAssembly::used_parts() const {
   return parts;
 }
 
+/// Number of cohesive elements in the assembly, and in parts without tets.
+std::size_t AbaqusAssembly::wedges_left_out() const {
+  std::size_t count = 0;
+  for (const AbaqusPart* part : used_parts())
+    if (part->tets.empty()) count += part->wedges.size();
+  return count;
+}
+
 void AbaqusAssembly::note_dropped(std::vector<Dropped>& dropped) const {
   KindCounts others;
   std::vector<std::string> node_sets, node_surfaces, element_sets, empty;
@@ -332,6 +340,8 @@ void AbaqusAssembly::note_dropped(std::vector<Dropped>& dropped) const {
   if (other_faces_ > 0) others.add("faces of other elements in surfaces", other_faces_);
   if (&root_ != bodies_.front().mesh && !root_.points.empty())
     others.add("nodes outside of parts", root_.points.size());
+  if (const std::size_t wedges = wedges_left_out(); wedges > 0)
+    others.add("cohesive elements outside of parts with tets", wedges);
   others.append_to(dropped);
   if (twice_ > 0) dropped.push_back({"tets in several sections; the last one is used", twice_});
   append_dropped_names(dropped, "node sets", node_sets);

@@ -90,6 +90,7 @@ class AbaqusAssembly {
   std::vector<Material> all_materials();
   void set_materials(ReadTetMesh& read);
   std::vector<const AbaqusPart*> used_parts() const;
+  std::size_t wedges_left_out() const;
 
   const AbaqusLines& in_;
   const AbaqusPart& root_;

@@ -345,7 +345,8 @@ class ExodusWriter {
 }  // namespace
 
 NameRules exodus_names() {
-  return {.form = exodus_name, .max_number = std::numeric_limits<std::int32_t>::max()};
+  // libMesh is usually built with sets numbered in 16 bits; it does not say when a number does not fit.
+  return {.form = exodus_name, .max_number = std::numeric_limits<std::int16_t>::max()};
 }
 
 std::string exodus_name(const std::string& name) {

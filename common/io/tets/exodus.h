@@ -33,7 +33,8 @@ ExodusForm exodus_form(std::size_t nodes, std::size_t tets, std::size_t largest_
 ///
 /// Elements are listed block by block; elem_num_map has their numbers in the mesh, from 1. Side sets hold
 /// each face once, on the side of the smaller tag. Equal meshes give equal bytes: the QA record has no date.
-/// Needs memory for the whole file. May be called concurrently, one call waiting for the other. \throws
+/// Needs memory for the whole file. May be called concurrently, one call waiting for the other.
+/// \throws
 /// OutputError without has_netcdf() or without the memory
 void write_exodus(const MeshToWrite& written, const ByteSink& sink);
 /// Likewise, in this form.

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 
 #include "common/files/file_names.h"
 #include "common/io/elements/vtk_cells.h"
@@ -296,6 +297,28 @@ const std::vector<TetFormat>& tet_formats() {
        .inner_surfaces = false,
        .single_precision = true}};
   return formats;
+}
+
+TetFormatInfo info_of(const TetFormat& format) {
+  return {format.name,
+          format.extension,
+          format.names,
+          format.surfaces,
+          format.patch_names,
+          format.fields,
+          format.second_order,
+          format.wedges,
+          static_cast<bool>(format.part_files),
+          format.bins,
+          format.moduli,
+          format.inner_surfaces,
+          format.single_precision};
+}
+
+void drop_names_of_cohesive(TetMesh& mesh) {
+  if (mesh.wedges.empty()) return;
+  const std::set<std::int64_t> used = tags_of(mesh.materials);
+  std::erase_if(mesh.material_names, [&](const auto& named) { return !used.contains(named.first); });
 }
 
 }  // namespace tetwright

@@ -69,4 +69,10 @@ struct TetFormat {
 /// All formats in the order in which they are listed. The first one with an extension is its default.
 const std::vector<TetFormat>& tet_formats();
 
+/// Contents that a format can store.
+TetFormatInfo info_of(const TetFormat& format);
+
+/// Removes the names of cohesive elements from those of the materials, like which files have them.
+void drop_names_of_cohesive(TetMesh& mesh);
+
 }  // namespace tetwright

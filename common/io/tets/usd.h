@@ -11,7 +11,7 @@ namespace tetwright {
 /// them.
 MeshParts usd_parts(const TetMesh& mesh);
 
-/// Writes the mesh as a TetMesh of Universal Scene Description (OpenUSD 24.03 or later) in a text file:
+/// Writes the mesh as a TetMesh of Universal Scene Description (recent versions of OpenUSD) in a text file:
 /// points in single precision, tets, and faces of the boundary as the surface. Each material is a GeomSubset
 /// of tetrahedra in the family materialBind, each group of boundary faces a GeomSubset of faces in the family
 /// boundary; both have their own name in the attribute tetwright:name. Faces between materials and of sheets

@@ -111,6 +111,40 @@ TEST(FaceSelection, PatchesEndAtCreasesAndMaterials) {
             faces_where(mesh, [](const Vec3& p) { return p.x() == 4 && p.z() >= 2; }));
 }
 
+// Other patches touch the point, too.
+TEST(FaceSelection, APatchIsAlsoWholeAtACornerOrEdge) {
+  for (const char* rule : {"patch-at:4,4,4", "patch-at:4,0,1", "patch-at:0,0,0", "patch-at:2,0,0"}) {
+    const std::set<Triangle> faces = selected(rule);
+    const TetMesh mesh = cube_with_sides();
+    std::set<std::pair<MaterialPair, std::uint16_t>> patches;
+    std::size_t in_patch = 0;
+    for (const InterfaceTriangle& t : mesh.interfaces)
+      if (faces.contains(t.ids)) patches.insert({t.pair(), t.patch});
+    ASSERT_EQ(patches.size(), 1u) << rule;
+    for (const InterfaceTriangle& t : mesh.interfaces) in_patch += patches.contains({t.pair(), t.patch});
+    EXPECT_EQ(faces.size(), in_patch) << rule;
+  }
+}
+
+TEST(FaceSelection, FacesWithoutAreaHaveNoNormal) {
+  TetMesh mesh = cube_with_sides();
+  for (Vec3& p : mesh.points)
+    if (p == Vec3(1, 1, 0)) p = Vec3(0.5, 0.5, 0);  // on the diagonal of a square
+  const auto result = select_faces(mesh, {parse_face_selection("down", "normal:0,0,-1,1"),
+                                          parse_face_selection("large", "plane:0,0,1e200=1e200")});
+  EXPECT_EQ(result[1].faces, 0u);
+  double area = 0;
+  for (const InterfaceTriangle& t : mesh.interfaces)
+    if (faces_in_group(mesh, "down").contains(t.ids)) {
+      const double twice = (mesh.points[t.ids[1]] - mesh.points[t.ids[0]])
+                               .cross(mesh.points[t.ids[2]] - mesh.points[t.ids[0]])
+                               .norm();
+      EXPECT_GT(twice, 0);
+      area += twice / 2;
+    }
+  EXPECT_NEAR(area, 16, 1e-12);
+}
+
 TEST(FaceSelection, AFaceIsInOneGroup) {
   TetMesh mesh = cube_with_sides();
   const auto results = select_faces(

@@ -313,7 +313,7 @@ TEST(PartedInterfaces, FieldsAndMidsideNodesAreCopied) {
   for (Vec3& p : midside.points) p += Vec3(0, 0, 0.01 * p.x());  // curved
   const TetMesh before = mesh;
   const MidsideNodes nodes_before = midside;
-  part_interfaces(mesh, &midside, std::vector{between(1, 2)});
+  const auto parted = part_interfaces(mesh, &midside, std::vector{between(1, 2)});
   ASSERT_EQ(mesh.point_fields[0].values.size(), 2 * mesh.points.size());
   for (std::size_t p = 0; p < mesh.points.size(); ++p) {
     EXPECT_EQ(mesh.point_fields[0].values[2 * p], mesh.points[p].x());
@@ -331,8 +331,71 @@ TEST(PartedInterfaces, FieldsAndMidsideNodesAreCopied) {
       const auto& edge = midside.edges[midside.of_faces[i][k]];
       EXPECT_EQ(edge, ascending_edge(mesh.interfaces[i].ids[k], mesh.interfaces[i].ids[(k + 1) % 3]));
     }
+  const auto node = [&](Index i) -> Vec3 {
+    return i < mesh.points.size() ? mesh.points[i] : midside.points[i - mesh.points.size()];
+  };
+  ASSERT_EQ(parted.size(), 1u);
+  EXPECT_EQ(parted[0].pairs.size(), (side_cells + 1u) * (side_cells + 1u) + edges);
+  for (const auto& [a, b] : parted[0].pairs) EXPECT_EQ(node(a), node(b));
   EXPECT_EQ(join_parted_interfaces(mesh).points, (side_cells + 1u) * (side_cells + 1u));
   EXPECT_EQ(mesh.point_fields[0].values, before.point_fields[0].values);
+}
+
+// A sheet in a material that is called like the side of a sheet.
+TEST(PartedInterfaces, NamesOfMaterialsDoNotHideSheets) {
+  TetMesh mesh = cracked(3);
+  mesh.material_names = {{1, "back"}};
+  const TetMesh before = mesh;
+  part_interfaces(mesh, nullptr, std::vector{InterfaceToPart{{}, "crack"}});
+  EXPECT_EQ(join_parted_interfaces(mesh).parts.size(), 1u);
+  expect_same(before, mesh);
+}
+
+TEST(PartedInterfaces, MaterialsOfOneNameAreToldApart) {
+  TetMesh mesh = two_halves();
+  mesh.material_names = {{1, "bone"}, {2, "bone"}};
+  const TetMesh before = mesh;
+  const auto parted = part_interfaces(mesh, nullptr, std::vector{between(1, 2)});
+  EXPECT_EQ(parted[0].sides, (std::array<std::string, 2>{"bone_1|bone_2:bone_1", "bone_1|bone_2:bone_2"}));
+  EXPECT_EQ(join_parted_interfaces(mesh).parts.size(), 1u);
+  expect_same(before, mesh);
+}
+
+// Formats that hold names of groups, but not of materials.
+TEST(PartedInterfaces, SidesAreFoundWithoutNamesOfMaterials) {
+  TetMesh mesh = two_halves();
+  part_interfaces(mesh, nullptr, std::vector{between(1, 2)});
+  mesh.material_names.clear();
+  const JoinedInterfaces joined = join_parted_interfaces(mesh);
+  ASSERT_EQ(joined.parts.size(), 1u);
+  EXPECT_EQ(joined.parts[0].materials, std::pair(1, 2));
+}
+
+TEST(PartedInterfaces, ValuesThatDifferAreCounted) {
+  TetMesh mesh = two_halves();
+  mesh.point_fields = {{"x", 1, false, std::vector<double>(mesh.points.size(), 1)},
+                       {"T", 1, false, std::vector<double>(mesh.points.size(), 1)}};
+  part_interfaces(mesh, nullptr, std::vector{between(1, 2)});
+  for (std::size_t p = mesh.points.size() - 3; p < mesh.points.size(); ++p)
+    mesh.point_fields[1].values[p] = 2;
+  const JoinedInterfaces joined = join_parted_interfaces(mesh);
+  ASSERT_EQ(joined.lost_values.size(), 1u);
+  EXPECT_EQ(joined.lost_values[0], (std::pair<std::string, std::size_t>("T", 3)));
+}
+
+TEST(PartedInterfaces, SidesThatDoNotCoincideAreNamed) {
+  TetMesh mesh = two_halves();
+  part_interfaces(mesh, nullptr, std::vector{between(1, 2)});
+  for (InterfaceTriangle& t : mesh.interfaces) {
+    const auto group = mesh.patch_groups.find({t.pair(), t.patch});
+    if (group == mesh.patch_groups.end() || group->second.name != "bone|implant:bone") continue;
+    t.patch = 0;  // one face leaves its group
+    break;
+  }
+  const JoinedInterfaces joined = join_parted_interfaces(mesh);
+  EXPECT_TRUE(joined.parts.empty());
+  ASSERT_EQ(joined.apart.size(), 1u);
+  EXPECT_EQ(joined.apart[0], (std::pair<std::string, std::size_t>("bone|implant", 1)));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "tests/tools/program.h"
 #include "tetwright/io.h"
+#include "tetwright/mesh_quality.h"
 #include "tetwright/parted_interfaces.h"
 
 namespace tetwright::parted_test {
@@ -108,11 +109,41 @@ TEST_F(PartedBoxes, OtherCommandsKeepThem) {
 TEST_F(PartedBoxes, WhatIsNotThereIsAShortfall) {
   const Answer a = run(boxes("--split-interface bone,implnt --split-interface skin,bone", "m.vtu"));
   EXPECT_EQ(a.status, 1);
-  EXPECT_NE(a.err.find("--split-interface \"bone,implnt\": no faces to part; there are \"bone,implant\""),
+  EXPECT_NE(a.err.find(
+                "tetwright: --split-interface \"bone,implnt\": no faces to part; there are \"bone,implant\""),
             std::string::npos)
       << a.err;
   EXPECT_EQ(parted().size(), 1u);
   EXPECT_TRUE(std::filesystem::exists(path("m.vtu")));
+}
+
+// Groups come before the materials that they lie between, whatever they are called.
+TEST_F(PartedBoxes, GroupsStayAmongMaterials) {
+  ASSERT_EQ(run(boxes("", "m.msh")).status, 0);
+  TetMesh mesh = read_tet_mesh(path("m.msh")).mesh;
+  mesh.interfaces = find_interfaces(mesh);
+  for (InterfaceTriangle& t : mesh.interfaces)
+    if (t.other == 2 && mesh.points[t.ids[0]].x() + mesh.points[t.ids[1]].x() + mesh.points[t.ids[2]].x() < 3)
+      t.patch = 1;
+  for (const std::string group : {"Aglue", "zglue"}) {
+    mesh.patch_groups = {{{{1, 2}, 1}, {0, group}}};
+    write_tet_mesh(mesh, path("g.msh"));
+    ASSERT_EQ(run("improve " + path("g.msh") + " --split-interface all --split-interface " + group +
+                  " --quiet -o " + path("h.msh"))
+                  .status,
+              0);
+    ASSERT_EQ(
+        run("improve " + path("h.msh") + " --quiet -o " + path("i.msh") + " --stats " + path("stats.json"))
+            .status,
+        0);
+    std::set<std::string> names;
+    for (const auto& p : parted()) names.insert(p.at("name"));
+    EXPECT_EQ(names, (std::set<std::string>{"bone|implant", "bone|skin", "implant|skin", group}));
+    EXPECT_TRUE(std::filesystem::exists(path("i_pairs.csv")));
+  }
+  // Names of materials are lost in .mesh, but not those of sides.
+  ASSERT_EQ(run(boxes("--split-interface all", "n.mesh")).status, 0);
+  EXPECT_EQ(run("check " + path("n.mesh") + " --quiet").status, 0);
 }
 
 TEST_F(PartedBoxes, TagsAreNamesToo) {
@@ -124,6 +155,11 @@ TEST_F(PartedBoxes, SecondOrderPartsWithItsMidsideNodes) {
   ASSERT_EQ(run(boxes("--split-interface all --order 2", "m.msh")).status, 0);
   const Answer check = run("check " + path("m.msh") + " --quiet");
   EXPECT_EQ(check.status, 0) << check.err;
+  // Midside nodes are doubled, too: there are as many as edges of the tets, whose points are doubled.
+  const TetMesh mesh = read_tet_mesh(path("m.msh")).mesh;
+  const std::string text = contents(path("m.msh"));
+  const std::size_t nodes = std::stoul(text.substr(text.find("$Nodes\n") + 7));
+  EXPECT_EQ(nodes, mesh.points.size() + straight_midside_nodes(mesh).edges.size());
 }
 
 TEST_F(PartedBoxes, WhatCannotBeHeldIsRefused) {
@@ -157,7 +193,7 @@ TEST_F(PartedBoxes, SelectionsAreGroupsInFiles) {
   const Answer a =
       run("simplify " + path("m.inp") + " --target-tets 400 --select none=plane:z=9 -o " + path("n.msh"));
   EXPECT_EQ(a.status, 1) << a.err;
-  EXPECT_NE(a.err.find("--select none: no face; the nearest face misses \"plane:z=9\" by 6.99"),
+  EXPECT_NE(a.err.find("tetwright: --select none: no face; the nearest face misses \"plane:z=9\" by 6.99"),
             std::string::npos)
       << a.err;
   EXPECT_TRUE(groups(path("n.msh")).contains("seat"));

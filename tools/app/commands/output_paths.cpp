@@ -76,7 +76,7 @@ std::vector<Written> files_written(const CommandLine& line) {
   for (const Written& more : {Written{"--boundary", line.outputs.boundary},
                               {"--write-sdf", line.outputs.distances},
                               {"--bins", bins_table_of(line)},
-                              {"--split-interface", pairs_table_of(line)},
+                              {"--split-interface", pairs_table_of(line, !line.options.parting.empty())},
                               {"--report", line.outputs.report},
                               {"--stats", line.outputs.stats},
                               {"--log-file", line.console.log_file}})
@@ -157,9 +157,9 @@ std::string bins_table_of(const CommandLine& line) {
   return (std::filesystem::path(mesh).parent_path() / (file_stem(mesh) + "_bins.csv")).string();
 }
 
-std::string pairs_table_of(const CommandLine& line) {
+std::string pairs_table_of(const CommandLine& line, bool parted) {
   const std::string& mesh = line.outputs.mesh;
-  if (line.options.parting.empty() || mesh.empty() || mesh == "-") return {};
+  if (!parted || mesh.empty() || mesh == "-") return {};
   return (std::filesystem::path(mesh).parent_path() / (file_stem(mesh) + "_pairs.csv")).string();
 }
 
@@ -199,7 +199,8 @@ void check_output_paths(const CommandLine& line) {
     check_output_path(line.outputs.boundary, FileKind::surface, line.outputs.boundary_format);
   check_sdf_path(line);
   if (const std::string table = bins_table_of(line); !table.empty()) check_output_file(table);
-  if (const std::string table = pairs_table_of(line); !table.empty()) check_output_file(table);
+  if (const std::string table = pairs_table_of(line, !line.options.parting.empty()); !table.empty())
+    check_output_file(table);
   check_report_path(line);
   check_files_are_different(line, Which::all);
 }

@@ -30,7 +30,8 @@ std::vector<std::string> read_files(const CommandLine& line);
 std::string bins_table_of(const CommandLine& line);
 
 /// The table of the pairs of points on parted interfaces, beside the mesh; empty: none.
-std::string pairs_table_of(const CommandLine& line);
+/// \param parted whether the mesh has parted interfaces
+std::string pairs_table_of(const CommandLine& line, bool parted);
 
 /// Path of the file with the results of a batch.
 std::string results_file_of(const CommandLine& line);

@@ -69,7 +69,7 @@ void write_result(Prepared& result, CommandRun& run) {
   if (line.options.bricks.team) line.options.bricks.team->end();
   if (const std::string table = bins_table_of(line); !table.empty())
     files.write(table, table_of_bins(result.mesh, result.bins));
-  if (const std::string table = pairs_table_of(line); !table.empty())
+  if (const std::string table = pairs_table_of(line, !run.report.parted.empty()); !table.empty())
     files.write(table, table_of_pairs(run.report.parted));
   if (!line.outputs.boundary.empty())
     write_interfaces(result.mesh, line.outputs.boundary, &files, line.outputs.boundary_format);

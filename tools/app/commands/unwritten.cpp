@@ -62,8 +62,22 @@ std::size_t named_caps(const PrepareReport& report) {
                                                 [](const CapReport::Cap& cap) { return cap.named; }));
 }
 
+/// Selections with faces.
+std::size_t named_selections(const PrepareReport& report) {
+  return static_cast<std::size_t>(
+      std::count_if(report.selected.begin(), report.selected.end(),
+                    [](const SelectedFaces& selected) { return selected.faces > 0; }));
+}
+
+/// Patches of the input, without those that became the sides of parted interfaces.
+std::size_t input_patches(const PrepareReport& report) {
+  std::size_t count = report.patches.size();
+  for (const PartedInterface& parted : report.parted) count -= std::min(count, parted.renamed_groups.size());
+  return count;
+}
+
 std::size_t named_patches(const PrepareReport& report) {
-  return named_caps(report) + report.selected.size() +
+  return named_caps(report) + named_selections(report) +
          static_cast<std::size_t>(
              std::count_if(report.patches.begin(), report.patches.end(),
                            [](const PatchComparison& p) { return !p.group.name.empty(); }));
@@ -96,11 +110,11 @@ void find_unwritten_patches(const CommandLine& line, const TetFormatInfo& format
       (boundary_lacks ? "nor can .off, but .vtp .ply .stl .obj can" : "but --boundary FILE can") +
       ", and .msh";
   if (line.outputs.no_boundary)
-    note("named patches", report.patches.size() + named_caps(report) + report.selected.size(),
+    note("named patches", input_patches(report) + named_caps(report) + named_selections(report),
          ", as --no-boundary asks");
   else if (!format.surfaces)
     note("named patches",
-         report.patches.size() + named_caps(report) + report.selected.size() - sheet_patches(report, mesh),
+         input_patches(report) + named_caps(report) + named_selections(report) - sheet_patches(report, mesh),
          no_place);
   else if (!format.patch_names)
     note("names of patches", named_patches(report), no_place);
@@ -174,6 +188,9 @@ void find_unwritten(const CommandLine& line, const TetMesh& mesh, PrepareReport&
     note_missing(shown(line.outputs.mesh), what, count, why, report);
   };
   find_unwritten_patches(line, format, mesh, report);
+  if (line.outputs.no_boundary)
+    note("names of the sides of parted interfaces, without which they cannot be joined again",
+         2 * report.parted.size(), ", as --no-boundary asks");
   if (line.outputs.no_boundary) note("faces of sheets", sheets_of(mesh).size(), ", as --no-boundary asks");
   if (!format.names) note("names of materials", mesh.material_names.size(), no_place);
   if (!format.fields) note("fields", mesh.point_fields.size() + mesh.cell_fields.size(), no_place);

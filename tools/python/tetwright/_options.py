@@ -89,7 +89,7 @@ def _texts(key: str, kind: str, value: Any, inputs: Inputs) -> Iterable[bytes]:
     if key == "select" and isinstance(value, dict):
         return [_name(key, str(name)) + b"=" + plain_text(rule, key) for name, rule in value.items()]
     if key in ("split_interface", "cohesive") and isinstance(value, tuple):
-        return [b",".join(plain_text(name, key) for name in value)]
+        return [b",".join(plain_text(str(name), key) for name in value)]
     if key in ("split_interface", "cohesive") and isinstance(value, list):
         return [text for item in value for text in _texts(key, kind, item, inputs)]
     if key in ("layer", "region", "cap", "surface", "select") and isinstance(value, list):

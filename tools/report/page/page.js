@@ -167,11 +167,13 @@ class Page {
       output.textContent = "This face is inside the mesh; --select is for faces of its boundary.";
       return;
     }
-    const {about, points} = this.mesh, digits = 7;  // more than the 16 bits of points need
+    const {about, points} = this.mesh;
+    // As many decimals as the coordinates of 16 bits have.
+    const decimals = Math.min(20, Math.max(0, Math.ceil(-Math.log10(about.step)) + 1));
     const centre = [0, 1, 2].map(axis => {
       let sum = 0;
       for (let k = 0; k < 3; ++k) sum += points[3 * this.corners[3 * face + k] + axis];
-      return Number((about.origin[axis] + about.step * sum / 3).toPrecision(digits));
+      return Number((about.origin[axis] + about.step * sum / 3).toFixed(decimals));
     });
     output.textContent = `--select NAME=patch-at:${centre.join(",")}`;
   }
