@@ -357,6 +357,9 @@ void find_nearest(const FaceSelection& selection, const std::vector<std::vector<
 FaceSelection parse_face_selection(const std::string& name, const std::string& rules) {
   FaceSelection selection{name, {}};
   if (name.empty()) throw UsageError("--select " + in_quotes(rules) + " has no name; give NAME=RULE");
+  if (name.find_first_of(":|") != std::string::npos)
+    throw UsageError("--select: the name " + in_quotes(name) +
+                     " has : or |, which names of interfaces and their sides have; give another name");
   constexpr std::string_view joined_by = " and ";
   std::string_view rest = rules;
   for (;;) {

@@ -61,13 +61,24 @@ class Joiner {
   }
 
   void find_cohesive() {
+    std::vector<std::size_t> without(result_.parts.size(), 0);  // faces without a wedge
+    for (const auto& [place, interface] : wedge_faces_) ++without[interface];
+    std::set<FaceCoordinates> done;
     for (const Wedge& wedge : mesh_.wedges) {
-      const auto known = wedge_faces_.find(coordinates_of(mesh_, {wedge[0], wedge[1], wedge[2]}));
-      if (known == wedge_faces_.end())
+      const FaceCoordinates place = coordinates_of(mesh_, {wedge[0], wedge[1], wedge[2]});
+      const auto known = wedge_faces_.find(place);
+      if (known == wedge_faces_.end()) {
         ++result_.other_wedges;
+        continue;
+      }
+      result_.parts[known->second].cohesive = true;
+      if (done.insert(place).second)
+        --without[known->second];
       else
-        result_.parts[known->second].cohesive = true;
+        ++result_.repeated_wedges;
     }
+    for (std::size_t i = 0; i < without.size(); ++i)
+      if (result_.parts[i].cohesive) result_.missing_wedges += without[i];
     mesh_.wedges.clear();
   }
 

@@ -65,7 +65,6 @@ std::optional<Materials> materials_called(const TetMesh& mesh, const std::string
 /// The faces of a request; none if it has no faces.
 std::vector<InterfaceToPart> faces_of(const InterfaceRequest& request, const TetMesh& mesh,
                                       const InnerFaces& inner) {
-  if (inner.names.contains(request.faces)) return {{std::nullopt, request.faces, request.cohesive}};
   std::vector<InterfaceToPart> faces;
   if (request.faces == all_interfaces) {
     for (const Materials& pair : inner.pairs) faces.push_back({pair, {}, request.cohesive});
@@ -73,6 +72,8 @@ std::vector<InterfaceToPart> faces_of(const InterfaceRequest& request, const Tet
   }
   if (const auto pair = materials_called(mesh, request.faces); pair && inner.pairs.contains(*pair))
     faces.push_back({*pair, {}, request.cohesive});
+  if (faces.empty() && inner.names.contains(request.faces))
+    faces.push_back({std::nullopt, request.faces, request.cohesive});
   return faces;
 }
 

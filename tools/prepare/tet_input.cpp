@@ -69,6 +69,12 @@ std::vector<InterfaceToPart> join_read_interfaces(ReadTetMesh& read, const std::
     read.dropped.push_back(
         {"cohesive elements between faces whose groups are not the sides of a parted interface",
          joined.other_wedges});
+  if (joined.repeated_wedges > 0)
+    read.dropped.push_back({"repeated cohesive elements", joined.repeated_wedges});
+  if (joined.missing_wedges > 0)
+    read.dropped.push_back(
+        {"faces without a cohesive element on parted interfaces that have some, which all get one",
+         joined.missing_wedges});
   for (const auto& [field, points] : joined.lost_values)
     read.dropped.push_back(
         {"values of the point field " + in_quotes(field) +
@@ -100,7 +106,8 @@ TetMesh read_tets_unchanged(Input from, PrepareRun& run) {
   run.report.input_points = read.mesh.points.size();
   report_dropped(read.dropped, from.name, run.report);
   run.progress.throw_if_stopped();
-  read.mesh.interfaces = interfaces_with_sheets(read.mesh);
+  // Those of a file with groups are complete, with their patches.
+  if (read.mesh.interfaces.empty()) read.mesh.interfaces = find_interfaces(read.mesh);
   run.report.patches = patches_of_input(read.mesh);
   run.report.material_names = read.mesh.material_names;
   run.report.result = mesh_statistics(read.mesh, run.options.shapes.bound());

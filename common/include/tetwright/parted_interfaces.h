@@ -68,6 +68,9 @@ struct JoinedInterfaces {
   std::size_t points = 0;              ///< number of points that were joined with another
   /// Wedges between faces that are not both in named groups of a parted interface; they are removed.
   std::size_t other_wedges = 0;
+  /// Wedges that are there twice, and faces of interfaces with wedges that have none. part_interfaces() makes
+  /// one for each face.
+  std::size_t repeated_wedges = 0, missing_wedges = 0;
   /// Names of point fields, and in how many joined points their values differed from that of the first copy.
   std::vector<std::pair<std::string, std::size_t>> lost_values;
   /// Interfaces whose groups have the names of sides, but do not coincide, and their faces without a

@@ -54,11 +54,14 @@ MeshParts names_of_parts(const TetMesh& mesh, const NameRules& rules) {
   const std::map<std::int64_t, std::int64_t> numbers = numbers_of(own);
   for (const BoundaryGroups::Group& g : groups.all())
     parts.surfaces.push_back({g.surface_region, rules.surface_numbers ? numbers.at(g.number) : 0, {}, {}});
-  // Names of the input take precedence.
-  for (const bool of_user : {true, false})
+  // Names of the input take precedence, among them those that the format can hold as they are.
+  const auto precedence = [&](const BoundaryGroups::Group& g) {
+    return g.pair ? 2 : rules.form(g.surface_region.name) != g.surface_region.name ? 1 : 0;
+  };
+  for (const int turn : {0, 1, 2})
     for (std::size_t i = 0; i < groups.all().size(); ++i) {
       const BoundaryGroups::Group& g = groups.all()[i];
-      if (g.pair.has_value() == of_user) continue;
+      if (precedence(g) != turn) continue;
       std::string& name = parts.surfaces[i].name;
       if (g.pair)
         name = of_surfaces.add_pair(pair_name(*g.pair, written));

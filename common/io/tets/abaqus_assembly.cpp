@@ -119,10 +119,19 @@ bool AbaqusAssembly::add_tet_of(const Body& body, std::int64_t number, std::vect
   return t != no_index;
 }
 
+/// Refuses sets in sets that no program nests so deeply.
+void AbaqusAssembly::check_nesting(std::size_t sets, std::size_t line) const {
+  constexpr std::size_t max_sets = 1000;
+  if (sets > max_sets)
+    in_.fail(line,
+             "more than " + std::to_string(max_sets) + " element sets include each other; list the elements");
+}
+
 /// Collects the tets in a set and in the sets that it includes.
 void AbaqusAssembly::add_tets_of(const Body& body, const std::string& set, std::size_t line,
                                  std::set<std::string>& open, std::vector<Index>& tets) const {
   if (!open.insert(set).second) return;  // the set includes itself
+  check_nesting(open.size(), line);
   const AbaqusPart& part = *body.mesh;
   if (!part.has_set(set))
     in_.fail(line, "there is no element set " + in_quotes(set) +
@@ -155,6 +164,7 @@ void AbaqusAssembly::add_tets_of_root(const std::string& name, std::size_t line,
   };
   if (const auto set = root_.sets.find(name); set != root_.sets.end()) {
     if (!open.insert(name).second) return;
+    check_nesting(open.size(), line);
     for (const AbaqusPart::Members& members : set->second) {
       const Body* body = !members.instance.empty() ? body_of(members.instance, members.line)
                          : several()               ? nullptr

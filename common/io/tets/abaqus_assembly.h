@@ -91,6 +91,7 @@ class AbaqusAssembly {
   void set_materials(ReadTetMesh& read);
   std::vector<const AbaqusPart*> used_parts() const;
   std::size_t wedges_left_out() const;
+  void check_nesting(std::size_t sets, std::size_t line) const;
 
   const AbaqusLines& in_;
   const AbaqusPart& root_;

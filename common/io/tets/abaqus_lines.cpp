@@ -20,7 +20,11 @@ std::vector<std::string_view> abaqus_fields(std::string_view line) {
   std::vector<std::string_view> fields;
   for (std::size_t begin = 0;;) {
     const std::size_t comma = line.find(',', begin);
-    fields.push_back(trimmed(line.substr(begin, comma == std::string_view::npos ? comma : comma - begin)));
+    std::string_view field =
+        trimmed(line.substr(begin, comma == std::string_view::npos ? comma : comma - begin));
+    if (field.size() > 1 && field.front() == '"' && field.back() == '"')
+      field = field.substr(1, field.size() - 2);
+    fields.push_back(field);
     if (comma == std::string_view::npos) break;
     begin = comma + 1;
   }

@@ -52,7 +52,7 @@ bool AbaqusPart::read(const AbaqusKeyword& keyword, AbaqusLines& in, const Abaqu
   else if (keyword.name == "ELEMENT")
     read_elements(keyword, in);
   else if (keyword.name == "ELSET")
-    read_set(keyword, in, (instance ? *instance : *this).elements.size());
+    read_set(keyword, in, (instance ? *instance : *this).element_count());
   else if (keyword.name == "NSET")
     note_node_set(keyword, in);
   else if (keyword.name == "SURFACE")
@@ -171,6 +171,13 @@ std::uint32_t AbaqusPart::index_of_set(const std::string& set) {
   const auto [known, added] = block_sets.try_emplace(set, static_cast<std::uint32_t>(block_names.size()));
   if (added) block_names.push_back(set);
   return known->second;
+}
+
+std::size_t AbaqusPart::element_count() const {
+  std::size_t count = elements.size() + wedges.size();
+  for (const auto* kinds : {&volumes, &others})
+    for (const auto& [kind, n] : *kinds) count += n;
+  return count;
 }
 
 void AbaqusPart::read_set(const AbaqusKeyword& keyword, AbaqusLines& in, std::size_t max_numbers) {

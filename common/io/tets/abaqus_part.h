@@ -42,6 +42,9 @@ class AbaqusPart {
   /// \throws InputError if one appears twice
   void sort_elements(const AbaqusLines& in);
 
+  /// Number of elements of all kinds.
+  std::size_t element_count() const;
+
   bool has_set(const std::string& name) const { return block_sets.contains(name) || sets.contains(name); }
 
   // Nodes and elements, in the order of the file; indices are into `points`.

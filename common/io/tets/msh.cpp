@@ -16,11 +16,12 @@ namespace tetwright {
 
 namespace {
 
+/// \param name as UniqueNames has it: shortening it again would make it equal to another
 void append_name(std::string& out, int dimension, std::int64_t group, const std::string& name) {
   append_number(out, dimension);
   out += ' ';
   append_number(out, group);
-  out += " \"" + msh_name(name) + "\"\n";
+  out += " \"" + name + "\"\n";
 }
 
 void begin_element(std::string& out, std::size_t number, std::int64_t type, std::int64_t physical,

@@ -215,6 +215,8 @@ TEST(FaceSelection, BadRulesAreQuoted) {
   expect("patch-at:1,2,nan", "has \"nan\" where a number is expected");
   expect("patch-at:1,2,3 and ", "\"\" is no rule");
   EXPECT_THROW((void)parse_face_selection("", "plane:z=min"), UsageError);
+  EXPECT_THROW((void)parse_face_selection("a|b", "plane:z=min"), UsageError);
+  EXPECT_THROW((void)parse_face_selection("a:b", "plane:z=min"), UsageError);
 }
 
 }  // namespace

@@ -205,6 +205,35 @@ TEST_F(PartedBoxes, SelectionsAreGroupsInFiles) {
   expect_refused(boxes("--select plane:z=1", "q.msh"), 2, {"--select"});
 }
 
+// `values` leaves patches, sides and wedges as they are.
+TEST_F(PartedBoxes, ValuesKeepPatchesAndSides) {
+  save("im.nhdr",
+       "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 4 4 4\nencoding: ascii\nspacings: 1 1 1\nendian: little\n"
+       "data file: im.txt\n");
+  std::string voxels;
+  for (int i = 0; i < 64; ++i) voxels += std::to_string(i) + " ";
+  save("im.txt", voxels);
+  ASSERT_EQ(run(boxes("--cohesive bone,implant --select top=plane:z=max", "m.msh")).status, 0);
+  const Answer a = run("values " + path("m.msh") + " T=" + path("im.nhdr") + " -o " + path("v.msh"));
+  ASSERT_EQ(a.status, 0) << a.err;
+  EXPECT_EQ(groups(path("v.msh")), groups(path("m.msh")));
+  EXPECT_EQ(read_tet_mesh(path("v.msh")).mesh.wedges, read_tet_mesh(path("m.msh")).mesh.wedges);
+  EXPECT_EQ(run("check " + path("v.msh") + " --quiet").status, 0);
+}
+
+// Wedges that were changed by hand are noticed.
+TEST_F(PartedBoxes, MissingAndRepeatedWedgesAreCounted) {
+  ASSERT_EQ(run(boxes("--cohesive bone,implant", "m.vtu")).status, 0);
+  TetMesh mesh = read_tet_mesh(path("m.vtu")).mesh;
+  ASSERT_GT(mesh.wedges.size(), 3u);
+  mesh.wedges.pop_back();
+  mesh.wedges.back() = mesh.wedges.front();
+  write_tet_mesh(mesh, path("n.vtu"));
+  const Answer check = run("check " + path("n.vtu"));
+  EXPECT_NE(check.err.find("1 repeated cohesive elements (dropped)"), std::string::npos) << check.err;
+  EXPECT_NE(check.err.find("2 faces without a cohesive element"), std::string::npos) << check.err;
+}
+
 // The table may not overwrite another file of the call.
 TEST_F(PartedBoxes, TheTableHasAFileOfItsOwn) {
   expect_refused(boxes("--split-interface all --log-file " + path("m_pairs.csv"), "m.vtu"), 2,

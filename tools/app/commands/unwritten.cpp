@@ -196,6 +196,11 @@ void find_unwritten(const CommandLine& line, const TetMesh& mesh, PrepareReport&
   if (!format.fields) note("fields", mesh.point_fields.size() + mesh.cell_fields.size(), no_place);
   find_unwritten_inner_faces(line, format, mesh, report);
   find_rounded_tets(line, format, mesh, report);
+  if (line.outputs.mesh == "-") {
+    std::size_t pairs = 0;
+    for (const PartedInterface& parted : report.parted) pairs += parted.pairs.size();
+    note("pairs of points on parted interfaces", pairs, "; their table needs a file name beside it");
+  }
   find_unwritten_bins(line, format, report);
   if (!format.patch_names)
     note("names of the sides of parted interfaces", 2 * report.parted.size(), no_place);

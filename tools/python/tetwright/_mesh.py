@@ -220,7 +220,7 @@ class TetMesh:
         with `material` and `other_material`, those on their two sides (0: outside). A triangle has the fields of the
         tet on the side of `material`. `gmsh:physical` holds the materials of tets and the numbers of the input's
         patches, 0 for triangles in no patch; `field_data` holds their names (a patch with the name of a material gets
-        a suffix), so that meshio writes both as physical groups."""
+        a suffix), so that meshio writes both as physical groups. Cohesive elements (`wedges`) are left out."""
         import meshio
         tets10 = self.tets10
         points = self.points if tets10 is None else np.vstack([self.points, self.midside_points])

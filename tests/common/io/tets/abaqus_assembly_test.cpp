@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/io/tets/abaqus_assembly.h"
 
+#include <algorithm>
+
 #include "common/io/tets/abaqus.h"
 #include "tests/common/io/expect_error.h"
 #include "tests/common/io/tricky_meshes.h"
@@ -176,6 +178,36 @@ TEST(AbaqusAssembly, BadInput) {
       "*Part, name=H\n*Node\n1, 0, 0, 0\n*Element, type=C3D8\n1, 1, 1, 1, 1, 1, 1, 1, 1\n*End Part\n";
   bad(hexahedra + assembly(two + instance("K", "H")), "line 4", "C3D8");
   EXPECT_EQ(read(hexahedra + assembly(two)).mesh.tets.size(), 2u);
+}
+
+TEST(AbaqusAssembly, QuotedNamesInDataLines) {
+  const ReadTetMesh r = read(
+      "*Node\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n*Element, type=C3D4\n1, 1, 2, 3, 4\n"
+      "*Elset, elset=\"_Foot 1_S1\"\n1\n*Surface, type=ELEMENT, name=\"Foot 1\"\n\"_Foot 1_S1\", S1\n");
+  ASSERT_EQ(r.mesh.patch_groups.size(), 1u);
+  EXPECT_EQ(r.mesh.patch_groups.begin()->second.name, "Foot 1");
+}
+
+TEST(AbaqusAssembly, DeeplyNestedSetsAreRefused) {
+  std::string text =
+      "*Node\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n*Element, type=C3D4\n1, 1, 2, 3, 4\n*Elset, "
+      "elset=s0\n1\n";
+  for (int i = 1; i <= 100000; ++i)
+    text += "*Elset, elset=s" + std::to_string(i) + "\ns" + std::to_string(i - 1) + "\n";
+  expect_input_error(read_abaqus, text + "*Solid Section, elset=s100000, material=m\n,\n",
+                     "more than 1000 element sets include each other");
+  EXPECT_EQ(read(text + "*Solid Section, elset=s900, material=m\n,\n").mesh.material_names.at(1), "s900");
+}
+
+// Cohesive elements belong to the mesh only inside of parts with tets.
+TEST(AbaqusAssembly, CohesiveElementsOutsideOfPartsAreNamed) {
+  const ReadTetMesh r = read(assembly(instance("Block-1", "Block"),
+                                      "*Node\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 0\n5, 1, 0, 0\n6, "
+                                      "0, 1, 0\n*Element, type=COH3D6\n1, 1, 2, 3, 4, 5, 6\n"));
+  EXPECT_TRUE(r.mesh.wedges.empty());
+  EXPECT_NE(std::find(r.dropped.begin(), r.dropped.end(),
+                      Dropped{"cohesive elements outside of parts with tets", 1}),
+            r.dropped.end());
 }
 
 TEST(AbaqusAssembly, EveryBeginningOfAFileIsReadOrRefused) {
