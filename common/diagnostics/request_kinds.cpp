@@ -315,6 +315,17 @@ constexpr std::array request_table = std::to_array<DiagnosticKind>({
      .message = "IMAGE: N voxels that are not finite (they do not count)",
      .cause = "The image has NaN or infinite values, often for voxels that were not measured.",
      .remedy = "None needed if these voxels are outside the mesh."},
+    {.code = points_outside,
+     .name = "points-outside",
+     .severity = Severity::note,
+     .title = "points outside the mesh",
+     .message = "SURFACE: N points outside the mesh (they have the weights of the nearest point of a tet; at "
+                "most D away)",
+     .cause = "A coarse mesh cuts off bumps and corners of the surface that it carries, or surface and mesh "
+              "are of different bodies.",
+     .remedy = "None needed if the distance is small. Weights alone carry such a point to the surface of the "
+               "mesh; the guide's page on soft bodies adds its offset. A mesh of more tets, or with a "
+               "`--tolerance`, is nearer to the surface."},
     {.code = not_written,
      .name = "not-written",
      .severity = Severity::note,

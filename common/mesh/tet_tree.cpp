@@ -2,6 +2,9 @@
 #include "common/mesh/tet_tree.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "common/geometry/morton.h"
 #include "common/geometry/point_triangle.h"
@@ -28,12 +31,17 @@ Box3 box_of(const TetCorners& corners) {
   return box;
 }
 
+/// Whether volumes in the tet are mostly rounding error.
+bool is_flat(const TetCorners& c, double volume) {
+  const double edges =
+      (c[1] - c[0]).squaredNorm() * (c[2] - c[0]).squaredNorm() * (c[3] - c[0]).squaredNorm();
+  return volume * volume <= tolerance::flat_squared * edges;
+}
+
 /// Weights of a point inside the tet or its mirror image; std::nullopt for other points and for flat tets.
 std::optional<TetWeights> weights_inside(const TetCorners& c, const Vec3& p) {
   const double volume = orient3d_value(c[0], c[1], c[2], c[3]);
-  const double edges =
-      (c[1] - c[0]).squaredNorm() * (c[2] - c[0]).squaredNorm() * (c[3] - c[0]).squaredNorm();
-  if (volume * volume <= tolerance::flat_squared * edges) return {};
+  if (is_flat(c, volume)) return {};
   TetWeights w{orient3d_value(p, c[1], c[2], c[3]), orient3d_value(c[0], p, c[2], c[3]),
                orient3d_value(c[0], c[1], p, c[3]), orient3d_value(c[0], c[1], c[2], p)};
   double sum = 0;
@@ -70,9 +78,82 @@ Nearest nearest_on_faces(const TetCorners& c, const Vec3& p) {
   return best;
 }
 
+std::vector<Index> all_tets(const TetMesh& mesh) {
+  std::vector<Index> tets(mesh.tets.size());
+  std::iota(tets.begin(), tets.end(), Index{0});
+  return tets;
+}
+
+/// Whether a positive tet contains the point, exactly.
+bool contains_exactly(const TetCorners& c, const Vec3& p) {
+  return orient3d(p, c[1], c[2], c[3]) >= 0 && orient3d(c[0], p, c[2], c[3]) >= 0 &&
+         orient3d(c[0], c[1], p, c[3]) >= 0 && orient3d(c[0], c[1], c[2], p) >= 0;
+}
+
+/// Weights of a point of a face.
+TetWeights weights_on_face(const TetCorners& c, int face, const Vec3& p) {
+  const auto [a, b, d] = face_corners(c, face);
+  const std::array<double, 3> w = weights_in_triangle(p, a, b, d);
+  TetWeights weights{};
+  for (int i = 0; i < 3; ++i) weights[tet_faces[face][i]] = w[i];
+  return weights;
+}
+
+/// Weights of a point that a positive tet contains. Quotients of volumes lose as many digits as the tet is
+/// flat, so their error is corrected until the weights reproduce the point: each step reduces it by a factor
+/// that is the accuracy of the volumes.
+TetWeights weights_within(const TetCorners& c, const Vec3& p) {
+  constexpr int max_steps = 8;  // in the flattest tets a step gains two digits of sixteen
+  int nearest = 0;
+  for (int i = 1; i < 4; ++i)
+    if ((p - c[i]).squaredNorm() < (p - c[nearest]).squaredNorm()) nearest = i;
+  const double volume = orient3d_value(c[0], c[1], c[2], c[3]);
+  const Vec3 e1 = c[1] - c[0], e2 = c[2] - c[0], e3 = c[3] - c[0];
+  const std::array<Vec3, 3> gradients{e2.cross(e3) / volume, e3.cross(e1) / volume, e1.cross(e2) / volume};
+  TetWeights w{}, next{};
+  next[nearest] = 1;  // exact at a corner
+  double error = std::numeric_limits<double>::infinity();
+  for (int step = 0; step < max_steps; ++step) {
+    Vec3 left = Vec3::Zero();
+    for (int i = 0; i < 4; ++i) left += next[i] * (p - c[i]);
+    if (!(left.squaredNorm() < error)) break;  // only rounding is left
+    error = left.squaredNorm();
+    w = next;
+    for (int i = 0; i < 3; ++i) {
+      const double change = gradients[i].dot(left);
+      next[i + 1] += change;
+      next[0] -= change;
+    }
+  }
+  const auto least = static_cast<int>(std::min_element(w.begin(), w.end()) - w.begin());
+  if (w[least] < 0) {
+    // The point is on this face, but for rounding. With this weight alone set to 0 it would move within it.
+    const auto [a, b, d] = face_corners(c, least);
+    w = weights_on_face(c, least, closest_point(p, a, b, d));
+  }
+  const double sum = w[0] + w[1] + w[2] + w[3];
+  for (double& x : w) x /= sum;
+  return w;
+}
+
 }  // namespace
 
-TetTree::TetTree(const TetMesh& mesh, Order order) : mesh_(mesh), tets_(mesh.tets.size()) {
+std::vector<Index> usable_tets(const TetMesh& mesh) {
+  std::vector<Index> tets;
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const Tet& v = mesh.tets[t];
+    const TetCorners c{mesh.points[v[0]], mesh.points[v[1]], mesh.points[v[2]], mesh.points[v[3]]};
+    const double volume = orient3d_value(c[0], c[1], c[2], c[3]);
+    // Far from flat, the sign of the rounded volume is exact.
+    if (volume > 0 && !is_flat(c, volume)) tets.push_back(static_cast<Index>(t));
+  }
+  return tets;
+}
+
+TetTree::TetTree(const TetMesh& mesh, Order order) : TetTree(mesh, all_tets(mesh), order) {}
+
+TetTree::TetTree(const TetMesh& mesh, std::vector<Index> tets, Order order)
+    : mesh_(mesh), tets_(std::move(tets)) {
   if (tets_.empty()) return;
   sort(order);
   tree_ = BoxTree(tets_.size(), leaf_tets, [&](std::size_t i) { return box_of(corners(tets_[i])); });
@@ -94,6 +175,19 @@ FoundTet TetTree::find(const Vec3& p, const BoxTree::Range& range, double max_di
   return containing.tet != no_index ? containing : find_nearest(p, range, max_distance);
 }
 
+FoundTet TetTree::find_exactly(const Vec3& p) const {
+  FoundTet found;
+  tree_.any_containing(p, tree_.all(), [&](std::size_t i) {
+    if (tets_[i] >= found.tet) return false;
+    const TetCorners c = corners(tets_[i]);
+    if (box_of(c).contains(p) && contains_exactly(c, p)) found.tet = tets_[i];
+    return false;  // a tet with a smaller index may follow
+  });
+  if (found.tet == no_index) return find_nearest(p, tree_.all(), std::numeric_limits<double>::infinity());
+  found.weights = weights_within(corners(found.tet), p);
+  return found;
+}
+
 TetTree::Corners TetTree::corners(Index t) const {
   const Tet& v = mesh_.tets[t];
   return {mesh_.points[v[0]], mesh_.points[v[1]], mesh_.points[v[2]], mesh_.points[v[3]]};
@@ -101,8 +195,8 @@ TetTree::Corners TetTree::corners(Index t) const {
 
 void TetTree::sort(Order order) {
   Box3 whole;
-  for (const Tet& t : mesh_.tets)
-    for (const Index p : t) whole.add(mesh_.points[p]);
+  for (const Index t : tets_)
+    for (const Index p : mesh_.tets[t]) whole.add(mesh_.points[p]);
   const MortonGrid grid(whole.low, whole.high);
   struct Key {
     MortonKey morton;
@@ -111,10 +205,11 @@ void TetTree::sort(Order order) {
   };
   std::vector<Key> keys(tets_.size());
   parallel_for(0, keys.size(), tree_grain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) {
-      const Box3 box = box_of(corners(static_cast<Index>(t)));
-      keys[t] = {grid.key(box.low + (box.high - box.low) / 2), order == Order::place ? 0 : mesh_.materials[t],
-                 static_cast<Index>(t)};
+    for (std::size_t i = begin; i < end; ++i) {
+      const Index t = tets_[i];
+      const Box3 box = box_of(corners(t));
+      keys[i] = {grid.key(box.low + (box.high - box.low) / 2), order == Order::place ? 0 : mesh_.materials[t],
+                 t};
     }
   });
   parallel_sort(keys, [](const Key& a, const Key& b) {
@@ -130,7 +225,7 @@ FoundTet TetTree::find_containing(const Vec3& p, const BoxTree::Range& range) co
     const TetCorners c = corners(tets_[i]);
     if (!box_of(c).contains(p)) return false;
     const auto w = weights_inside(c, p);
-    if (w) found = {tets_[i], *w};
+    if (w) found = {tets_[i], *w, 0};
     return w.has_value();
   });
   return found;
@@ -148,11 +243,9 @@ FoundTet TetTree::find_nearest(const Vec3& p, const BoxTree::Range& range, doubl
     tet = tets_[i];
     return n.squared_distance;
   });
-  FoundTet found{tet, {}};
-  if (tet == no_index) return found;
-  const auto [a, b, c] = face_corners(corners(tet), best.face);
-  const std::array<double, 3> w = weights_in_triangle(best.place, a, b, c);
-  for (int i = 0; i < 3; ++i) found.weights[tet_faces[best.face][i]] = w[i];
+  FoundTet found{tet, {}, std::sqrt(best.squared_distance)};
+  if (tet == no_index) return {};
+  found.weights = weights_on_face(corners(tet), best.face, best.place);
   return found;
 }
 

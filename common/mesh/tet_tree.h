@@ -18,7 +18,11 @@ using TetWeights = std::array<double, 4>;
 struct FoundTet {
   Index tet = no_index;
   TetWeights weights{};
+  double distance = 0;  ///< of the point from the tet, input units
 };
+
+/// Tets that are positive and not flat, so that they have weights: tolerance::flat_squared.
+std::vector<Index> usable_tets(const TetMesh& mesh);
 
 /// Finds tets by position. Inverted tets count as their mirror images; flat ones contain no point but may be
 /// nearest. All functions may be called concurrently. Built in parallel; the result does not depend on the
@@ -32,6 +36,8 @@ class TetTree {
   };
 
   TetTree(const TetMesh& mesh, Order order);
+  /// \param tets those to be found; any others are ignored
+  TetTree(const TetMesh& mesh, std::vector<Index> tets, Order order = Order::place);
 
   /// All tets, as a range of positions in the tree's order.
   BoxTree::Range all() const { return tree_.all(); }
@@ -44,6 +50,12 @@ class TetTree {
   ///   `max_distance`
   FoundTet find(const Vec3& p, const BoxTree::Range& range,
                 double max_distance = std::numeric_limits<double>::infinity()) const;
+
+  /// Finds the tet with the smallest index that contains `p`, as exact predicates decide; faces, edges and
+  /// points belong to a tet. The weights reproduce `p` up to the rounding of its coordinates.
+  /// \return this tet; if there is none, the nearest one, as find() does; no_index if there are no tets
+  /// \pre all tets are among usable_tets()
+  FoundTet find_exactly(const Vec3& p) const;
 
  private:
   using Corners = std::array<Vec3, 4>;

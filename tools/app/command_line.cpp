@@ -29,13 +29,17 @@ struct CommandEntry {
   const char* description;
   void (*add_options)(CLI::App& app, CommandLine& c);
 };
-constexpr std::array<CommandEntry, 8> commands{{
+constexpr std::array<CommandEntry, 9> commands{{
     {Command::prepare, "Turns scans or a segmented volume into a simulation mesh, in one go", add_prepare},
     {Command::mesh, "Turns scans or a segmented volume into a dense mesh", add_mesh},
     {Command::simplify, "Reduces the number of tets of a tet mesh", add_simplify},
     {Command::improve, "Improves the shapes of a tet mesh, keeping the number of tets nearly the same",
      add_improve},
     {Command::values, "Adds the values of images to a tet mesh, which otherwise stays as it is", add_values},
+    {Command::embed,
+     "Finds the weights by which a tet mesh carries the points of a finer surface: tet and barycentric "
+     "coordinates of each",
+     add_embed},
     {Command::check,
      "Reports validity, topology and quality of a tet mesh, and its distance from surfaces; status 1 if it "
      "is not valid (a warning, such as an unused point, leaves it valid)",
@@ -150,6 +154,8 @@ const char* name_of(Command command) {
       return "improve";
     case Command::values:
       return "values";
+    case Command::embed:
+      return "embed";
     case Command::check:
       return "check";
     case Command::batch:

@@ -23,11 +23,11 @@ inline constexpr const char* standard_input = "stdin";
 /// How progress is displayed.
 enum class ProgressStyle { automatic, bar, json, none };
 
-enum class Command { prepare, mesh, simplify, improve, values, check, batch, sample };
+enum class Command { prepare, mesh, simplify, improve, values, embed, check, batch, sample };
 
 /// Files that a command writes. "-": standard output, for formats that can be streamed; empty: not written.
 struct OutputOptions {
-  std::string mesh;             ///< the mesh; for the command `sample` a sample of any kind
+  std::string mesh;             ///< the mesh; of `sample` a sample of any kind, of `embed` the weights
   std::string format;           ///< format of `mesh`; empty: from its extension
   std::string boundary;         ///< boundary and interfaces as a surface
   std::string boundary_format;  ///< value of --output-format if `boundary` is standard output
@@ -71,7 +71,7 @@ struct CommandLine {
   std::string arguments;  ///< `call` without the program's name; each starts with a space
   /// The result stays in the memory of a host program, so that -o is optional. Set this before parsing.
   bool in_memory = false;
-  std::vector<std::string> inputs;    ///< standard_input for "-"; for `sample` its name
+  std::vector<std::string> inputs;    ///< standard_input for "-"; of `sample` its name
   std::string input_format;           ///< extension for standard input, such as ".ply"; empty: not used
   std::vector<NamedValue> materials;  ///< inputs after the positional ones: name and file
   std::vector<NamedValue> sheets, partitions;  ///< further inputs: name and file

@@ -395,6 +395,24 @@ void add_values(CLI::App& app, CommandLine& c) {
   add_common(app, c);
 }
 
+void add_embed(CLI::App& app, CommandLine& c) {
+  app.add_option("MESH", c.inputs, meshes())->required()->expected(1)->allow_extra_args(false);
+  app.add_option_function<std::string>(
+         "SURFACE", [&c](const std::string& file) { c.inputs.push_back(file); },
+         "Surface whose points the mesh carries: " + known_extensions(FileKind::surface))
+      ->required()
+      ->expected(1);
+  add_input_format(app, c);
+  add_output(app, c,
+             "Tet, nodes, weights and distance of each point of SURFACE, counted from 0: .npz (arrays of "
+             "numpy), .json");
+  app.add_option("--output-format", c.outputs.format,
+                 "Format in place of the extension, and of standard output (-o -): npz, json")
+      ->type_name("NAME");
+  add_stats(app, c);
+  add_common(app, c);
+}
+
 void add_check(CLI::App& app, CommandLine& c) {
   app.add_option("MESH", c.inputs, meshes())->required()->expected(1);
   add_input_format(app, c);

@@ -17,6 +17,7 @@ void add_mesh(CLI::App& app, CommandLine& line);
 void add_simplify(CLI::App& app, CommandLine& line);
 void add_values(CLI::App& app, CommandLine& c);
 void add_improve(CLI::App& app, CommandLine& line);
+void add_embed(CLI::App& app, CommandLine& line);
 void add_check(CLI::App& app, CommandLine& line);
 void add_batch(CLI::App& app, CommandLine& line);
 void add_sample(CLI::App& app, CommandLine& line);

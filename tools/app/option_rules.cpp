@@ -81,6 +81,8 @@ void complete_output_stream(CommandLine& out) {
                      " -) has no extension; give --output-format");
   if (out.outputs.boundary == "-")
     out.outputs.boundary_format = std::exchange(out.outputs.format, {});
+  else if (out.command == Command::embed)
+    check_embedding_path(out.outputs.mesh, out.outputs.format);
   else if (out.command != Command::sample)  // a sample may be of any kind
     check_tet_stream(out);
 }

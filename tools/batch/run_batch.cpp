@@ -56,7 +56,7 @@ CommandLine parse(const Job& job) {
   (void)parse_command_line(static_cast<int>(argv.size()), argv.data(), line);
   if (line.command == Command::batch || line.command == Command::sample)
     throw UsageError(std::string(name_of(line.command)) +
-                     " is not a job; jobs are prepare, mesh, simplify, improve and check");
+                     " is not a job; jobs are prepare, mesh, simplify, improve, values, embed and check");
   if (!line.console.log_file.empty())
     throw UsageError("--log-file is for the whole batch; give it to batch itself");
   if (!line.input_format.empty() || line.outputs.mesh == "-" || line.outputs.boundary == "-")
@@ -107,6 +107,10 @@ void carry_out(CommandRun& run, Ended& ended) {
   if (run.line.command == Command::check) {
     const CheckReport check = make_check(run);
     ended.stats = nlohmann::json::parse(check_json(run, check));
+  } else if (run.line.command == Command::embed) {
+    check_output_paths(run.line);
+    write_embedding(make_embedding(run), run);
+    ended.stats = nlohmann::json::parse(stats_json(run));
   } else {
     check_output_paths(run.line);
     Prepared result = make_result(run);

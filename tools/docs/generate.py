@@ -31,7 +31,7 @@ UNITS = {
     "--base": "input units", "--thicken": "input units, or % of the diagonal", "--min-voxels": "voxels", "--spacing": "input units", "--dimensions": "voxels", "--outside-label": "label", "--labels": "labels", "--protect-labels": "labels", "--order": "", "--min-modulus": "of the modulus", "--bins": "of the image", "--parts": "parts", "--jobs": "jobs",
 }
 NAMED_TYPES = ("NAME=FILE", "NAME=THICKNESS", "NAME=IMAGE", "NAME=N|A,B,...", "NAME=A,B[,S,T]")
-COMMANDS_ORDER = ("prepare", "mesh", "simplify", "improve", "values", "check", "batch", "sample")
+COMMANDS_ORDER = ("prepare", "mesh", "simplify", "improve", "values", "embed", "check", "batch", "sample")
 
 
 class Program:

@@ -106,7 +106,7 @@ TetMesh read_tets_unchanged(Input from, PrepareRun& run) {
   run.report.input_points = read.mesh.points.size();
   report_dropped(read.dropped, from.name, run.report);
   run.progress.throw_if_stopped();
-  // Those of a file with groups are complete, with their patches.
+  // A file with groups has all of them, with their patches.
   if (read.mesh.interfaces.empty()) read.mesh.interfaces = find_interfaces(read.mesh);
   run.report.patches = patches_of_input(read.mesh);
   run.report.material_names = read.mesh.material_names;

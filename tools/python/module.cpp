@@ -7,6 +7,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
@@ -14,6 +15,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <type_traits>
 #include <utility>
 
 #include "common/io/names/label_groups.h"
@@ -193,6 +195,49 @@ py::tuple check(std::vector<std::string> arguments, NamedInputs& inputs, const p
   return py::make_tuple(to_text(json), to_texts(notes), passed);
 }
 
+/// An array of numbers of another type, with a row of four or a number for each point.
+template <class To, class Items>
+py::array array_of(const Items& items, py::ssize_t columns) {
+  const auto count = static_cast<py::ssize_t>(items.size());
+  py::array_t<To> array(columns > 1 ? std::vector<py::ssize_t>{count, columns}
+                                    : std::vector<py::ssize_t>{count});
+  To* to = array.mutable_data();
+  for (const auto& item : items)
+    if constexpr (std::is_arithmetic_v<std::decay_t<decltype(item)>>)
+      *to++ = static_cast<To>(item);
+    else
+      to = std::copy(item.begin(), item.end(), to);
+  return std::move(array);
+}
+
+py::tuple embed(std::vector<std::string> arguments, NamedInputs& inputs, const py::object& callback) {
+  const CommandLine line = parse(std::move(arguments));
+  SharedProgress progress;
+  Embedding made;
+  std::string stats;
+  std::vector<std::string> notes;
+  run_in_background(
+      [&] {
+        with_threads_of_host(line.options.limits.threads, [&] {
+          const bool written = !line.outputs.mesh.empty();
+          if (written) check_stats_path(line);
+          CommandRun run(line, progress, &inputs);
+          with_stats_of_failure(run, [&] {
+            if (written) check_output_paths(line);
+            made = make_embedding(run);
+            if (written) write_embedding(made, run);
+          });
+          stats = stats_json(run);
+          notes = notes_of(run.report);
+        });
+      },
+      progress, callback);
+  return py::make_tuple(
+      py::make_tuple(array_of<std::int64_t>(made.tets, 1), array_of<std::int64_t>(made.nodes, 4),
+                     array_of<double>(made.weights, 4), array_of<double>(made.distances, 1)),
+      to_texts(notes), to_text(stats));
+}
+
 // Exceptions.
 
 /// Python class for each kind of error; a borrowed reference, owned by the module.
@@ -343,6 +388,7 @@ PYBIND11_MODULE(_core, module) {
   module.def("is_face_label", [](const std::string& name) { return is_face_label(name); });
   module.def("run", &run);
   module.def("check", &check);
+  module.def("embed", &embed);
   module.def("read", [](const std::string& path, const std::string& material_field) {
     auto mesh = std::make_shared<Mesh>();
     const py::gil_scoped_release release;

@@ -10,8 +10,8 @@ namespace tetwright::python {
 
 std::map<std::string, std::string> option_types(const std::string& command) {
   const std::map<std::string, void (*)(CLI::App&, CommandLine&)> commands{
-      {"prepare", add_prepare}, {"mesh", add_mesh},     {"simplify", add_simplify},
-      {"improve", add_improve}, {"values", add_values}, {"check", add_check}};
+      {"prepare", add_prepare}, {"mesh", add_mesh},   {"simplify", add_simplify}, {"improve", add_improve},
+      {"values", add_values},   {"embed", add_embed}, {"check", add_check}};
   std::map<std::string, std::string> types;
   const auto add_options = commands.find(command);
   if (add_options == commands.end()) return types;

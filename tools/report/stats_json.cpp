@@ -10,6 +10,7 @@
 #include "tetwright/prepare_steps.h"
 #include "tetwright/resources.h"
 #include "tools/report/diagnostics_json.h"
+#include "tools/report/face_sets_json.h"
 #include "tools/report/features_json.h"
 #include "tools/report/stage_times_json.h"
 #include "tools/report/values_json.h"
@@ -270,26 +271,6 @@ nlohmann::json patches_json(const std::vector<PatchComparison>& all) {
   return j;
 }
 
-nlohmann::json selections_json(const std::vector<SelectedFaces>& selected) {
-  nlohmann::json all = nlohmann::json::array();
-  for (const SelectedFaces& s : selected)
-    all.push_back({{"name", s.name}, {"faces", s.faces}, {"area", s.area}});
-  return all;
-}
-
-nlohmann::json parted_json(const std::vector<PartedInterface>& parted) {
-  nlohmann::json all = nlohmann::json::array();
-  for (const PartedInterface& p : parted)
-    all.push_back({{"name", p.name},
-                   {"sides", p.sides},
-                   {"faces", p.faces},
-                   {"joined_faces", p.joined_faces},
-                   {"pairs", p.pairs.size()},
-                   {"cohesive", p.cohesive},
-                   {"degenerate_wedges", p.degenerate_wedges}});
-  return all;
-}
-
 nlohmann::json caps_json(const CapReport& report) {
   nlohmann::json j = {{"holes", report.holes},
                       {"flat", report.flat},
@@ -450,6 +431,7 @@ std::string stats_json(const CommandRun& ended) {
   if (!run.parted.empty()) j["parted"] = parted_json(run.parted);
   if (!run.values.empty()) j["values"] = values_json(run.values);
   if (!run.bins.empty()) j["bins"] = bins_json(run.bins);
+  if (ended.embedding) j["embedding"] = embedding_json(*ended.embedding);
   if (ended.parts) j["parts"] = partition_json(*ended.parts);
   if (ended.pieces_by_helpers) j["parts"]["by_helpers"] = *ended.pieces_by_helpers;
   if (ended.hdf5_ranks) j["parts"]["hdf5_ranks"] = *ended.hdf5_ranks;

@@ -34,6 +34,17 @@ nlohmann::json values_json(const std::vector<ValueReport>& values) {
   return all;
 }
 
+nlohmann::json embedding_json(const EmbeddingReport& embedding) {
+  const EmbeddingSummary& found = embedding.summary;
+  nlohmann::json j = {{"points", found.points},
+                      {"tets", embedding.tets},
+                      {"outside", found.outside},
+                      {"largest_distance", found.largest_distance},
+                      {"seconds", embedding.seconds}};
+  if (found.largest_distance > 0) j["place"] = place_json(found.place);
+  return j;
+}
+
 nlohmann::json bins_json(const std::vector<BinsReport>& divisions) {
   nlohmann::json all = nlohmann::json::array();
   const auto bound = [](double x) { return std::isfinite(x) ? nlohmann::json(x) : nlohmann::json(); };

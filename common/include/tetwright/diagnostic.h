@@ -61,6 +61,7 @@ enum class DiagnosticCode : std::uint8_t {
   values_outside,
   values_nearest,
   values_not_finite,
+  points_outside,
   not_written,
   single_precision,
   names_changed,

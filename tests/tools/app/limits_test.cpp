@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/tools/program.h"
+#include "tetwright/files.h"
 
 namespace tetwright::limits_test {
 namespace {

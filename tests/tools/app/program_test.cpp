@@ -82,7 +82,7 @@ TEST(Program, QuietSaysNothing) {
 TEST(Program, HelpAndVersion) {
   for (const char* arguments :
        {"--help", "prepare --help", "mesh --help", "simplify --help", "improve --help", "values --help",
-        "check --help", "sample --help", "--version"}) {
+        "embed --help", "check --help", "sample --help", "--version"}) {
     const Answer a = run(arguments);
     EXPECT_EQ(a.status, 0) << arguments;
     EXPECT_NE(a.out.find("etwright"), std::string::npos) << arguments;

@@ -49,6 +49,9 @@ TEST(StatsJson, FollowsItsSchema) {
   stats("simplify " + (f / "d.vtu") + " -o " + (f / "s.vtu") + " --target-tets 3");
   stats("improve " + (f / "s.vtu") + " -o " + (f / "i.vtu"));
   stats("check " + (f / "d.vtu"));
+  EXPECT_GT(
+      stats("embed " + (f / "d.vtu") + " " + (f / "t.ply") + " -o " + (f / "w.npz"))["embedding"]["points"],
+      0);
   stats("sample organs -o " + (f / "o.nrrd"));
   const auto organs = stats("mesh " + (f / "o.nrrd") + " -o " + (f / "o.vtu") + " --voxel-size 2 --uniform");
   EXPECT_EQ(organs["input"]["volume"]["labels"].size(), organs["result"]["materials"].size());

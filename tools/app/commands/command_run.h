@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "tetwright/embedding.h"
 #include "tetwright/files.h"
 #include "tetwright/loop_times.h"
 #include "tetwright/partition.h"
@@ -18,6 +19,13 @@
 #include "tools/report/page/surface_distances.h"
 
 namespace tetwright {
+
+/// Outcome of `embed`.
+struct EmbeddingReport {
+  EmbeddingSummary summary;
+  std::size_t tets = 0;  ///< of the mesh
+  double seconds = 0;    ///< for the weights
+};
 
 /// State and outcome of a command.
 struct CommandRun {
@@ -39,6 +47,7 @@ struct CommandRun {
   /// Pieces of it that other members of a team wrote, if they are files of their own.
   std::optional<std::size_t> pieces_by_helpers;
   std::optional<std::size_t> hdf5_ranks;      ///< members of a team that wrote HDF5 files together
+  std::optional<EmbeddingReport> embedding;   ///< with `embed`
   std::string error, stage;                   ///< message and stage of a run that failed
   std::optional<SurfaceDistances> distances;  ///< distances of the result; only with --report and a surface
 };

@@ -100,6 +100,8 @@ ExitStatus run_command(const CommandLine& line) {
     with_threads(line.options.limits.threads, [&] {
       if (line.command == Command::check)
         run_check(run);
+      else if (line.command == Command::embed)
+        run_embed(run);
       else if (line.command == Command::batch)
         run_batch(run);
       else if (line.command == Command::sample)

@@ -3,6 +3,7 @@
 
 #include <exception>
 
+#include "tetwright/embedding.h"
 #include "tetwright/prepare.h"
 #include "tools/app/command_line.h"
 #include "tools/app/commands/command_run.h"
@@ -31,7 +32,17 @@ void report_failure(const std::exception& error, CommandRun& run);
 /// \throws Error in the cases of run_command()
 CheckReport make_check(CommandRun& run);
 
+/// Runs `embed` without writing or printing.
+///
+/// \throws Error in the cases of run_command()
+Embedding make_embedding(CommandRun& run);
+/// Writes the weights and the statistics to the files of `run.line`.
+///
+/// \throws OutputError if a file cannot be written
+void write_embedding(const Embedding& made, CommandRun& run);
+
 void run_check(CommandRun& run);
+void run_embed(CommandRun& run);
 /// Runs the jobs of a batch, and prints a line whenever one ends.
 void run_batch(CommandRun& run);
 void run_sample(CommandRun& run);

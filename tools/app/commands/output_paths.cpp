@@ -65,7 +65,7 @@ struct Written {
 
 std::vector<Written> files_written(const CommandLine& line) {
   std::vector<Written> files;
-  if (line.command == Command::sample)
+  if (line.command == Command::sample || line.command == Command::embed)
     files.push_back({"-o", line.outputs.mesh});
   else if (line.command == Command::batch)
     files.push_back({"--results", results_file_of(line)});
@@ -193,7 +193,9 @@ void check_tet_stream(const CommandLine& line) {
 }
 
 void check_output_paths(const CommandLine& line) {
-  if (line.command != Command::check)
+  if (line.command == Command::embed)
+    check_embedding_path(line.outputs.mesh, line.outputs.format);
+  else if (line.command != Command::check)
     check_output_path(line.outputs.mesh, FileKind::tet_mesh, line.outputs.format, line.outputs.parts);
   if (!line.outputs.boundary.empty())
     check_output_path(line.outputs.boundary, FileKind::surface, line.outputs.boundary_format);

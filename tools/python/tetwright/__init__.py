@@ -22,11 +22,12 @@ a `ShortfallWarning` and is listed in `TetMesh.shortfall`; `TetMesh.diagnostics`
 shortfalls, `diagnostic_kinds()` their causes and remedies. Calls release the interpreter's lock, and Ctrl-C cancels
 them. Several calls may run at the same time, each with its own `threads`.
 """
-from ._commands import check, improve, mesh, prepare, read, simplify, values
+from ._commands import check, embed, improve, mesh, prepare, read, simplify, values
 from ._core import (Error, InputError, InternalError, NothingToMeshError, OutputError, UsageError,
                     version as __version__)
+from ._embedding import Embedding
 from ._mesh import CheckResult, Diagnostic, DiagnosticKind, Interfaces, PartedInterface, ShortfallWarning, TetMesh, diagnostic_kinds
 
-__all__ = ["prepare", "mesh", "simplify", "improve", "values", "check", "read", "TetMesh", "Interfaces", "PartedInterface", "CheckResult", "Diagnostic",
+__all__ = ["prepare", "mesh", "simplify", "improve", "values", "embed", "check", "read", "TetMesh", "Interfaces", "PartedInterface", "CheckResult", "Embedding", "Diagnostic",
            "DiagnosticKind", "diagnostic_kinds", "ShortfallWarning", "Error", "UsageError", "InputError", "NothingToMeshError", "OutputError",
            "InternalError", "__version__"]

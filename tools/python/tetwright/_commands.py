@@ -9,6 +9,7 @@ import warnings
 from typing import Any, Callable, Optional, Union
 
 from . import _core
+from ._embedding import Embedding, embedding_of
 from ._inputs import Inputs, is_file
 from ._mesh import CheckResult, ShortfallWarning, TetMesh
 from ._options import arguments_of, images_of, materials_of
@@ -87,6 +88,25 @@ def values(tets: Any, images: Any, *, spacing: Any = None, origin: Any = None, a
         raise _core.UsageError(f"images is a {type(images).__name__}; give a dict from names of fields to images")
     names = [inputs.add(tets, "mesh")]
     return _run("values", inputs, names + images_of(images, inputs), options, progress)
+
+
+def embed(mesh: Any, surface: Any, *, progress: Progress = None, **options: Any) -> Embedding:
+    """Finds the weights by which a tet mesh carries the points of a finer surface, for simulations of soft bodies: for
+    each point the tet that contains it and its barycentric coordinates there; outside the mesh those of the nearest
+    point of the nearest tet, and the distance.
+
+    mesh -- as for `simplify`
+    surface -- a file, (points, triangles), or a mesh of trimesh, meshio or pyvista
+    options -- those of `tetwright embed --help`: threads=2; output="weights.npz" also writes the arrays
+
+    `Embedding.carry(points)` moves the surface along with the mesh.
+    """
+    inputs = Inputs()
+    names = [inputs.add(mesh, "mesh"), inputs.add(surface, "surface")]
+    arguments = arguments_of("embed", names, options, inputs)
+    inputs.finish()
+    with _shown(progress) as callback:
+        return embedding_of(*_core.embed(arguments, inputs.core, callback))
 
 
 def check(tets: Any, *, surface: Any = None, before: Any = None, tolerance: Union[float, str, None] = None,

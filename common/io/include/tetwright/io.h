@@ -13,6 +13,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tetwright/embedding.h"
 #include "tetwright/files.h"
 #include "tetwright/image_volume.h"
 #include "tetwright/label_source.h"
@@ -448,6 +449,17 @@ void write_label_volume(const LabelVolume& volume, const std::string& path, Outp
 void write_label_source(const LabelSource& source, MaterialTag largest, const std::string& path,
                         OutputFiles* files = nullptr, const std::string& format = {},
                         Progress* progress = nullptr);
+
+/// Writes an embedding, whose numbers count from 0.
+///
+/// - .npz: the arrays `tets` (n), `nodes` (n, 4), both of 64-bit integers, `weights` (n, 4) and `distances`
+///   (n), both of doubles, as numpy.savez() writes them; without dates, so that the bytes repeat
+/// - .json: an object with the same keys
+/// \param format "npz" or "json", used instead of the path's extension
+void write_embedding(const Embedding& embedding, const std::string& path, OutputFiles* files = nullptr,
+                     const std::string& format = {});
+/// Checks a path for write_embedding() as check_output_path() does.
+void check_embedding_path(const std::string& path, const std::string& format = {});
 
 /// All files that write_tet_mesh() writes for a path.
 /// \param parts number of parts; 0: the mesh is not divided
