@@ -207,7 +207,7 @@ py::array array_of(const Items& items, py::ssize_t columns) {
       *to++ = static_cast<To>(item);
     else
       to = std::copy(item.begin(), item.end(), to);
-  return std::move(array);
+  return array;
 }
 
 py::tuple embed(std::vector<std::string> arguments, NamedInputs& inputs, const py::object& callback) {

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "common/io/elements/element_types.h"
 #include "common/io/elements/midside_nodes_read.h"
 #include "common/io/encodings/hdf5_image.h"
 #include "common/io/names/mesh_fields.h"
