@@ -230,13 +230,16 @@ def peel(folder):
     check("the opening of the peeled layer is that of the closed form to 1e-4", worst < 1e-4 * at_end)
 
 
-if not shutil.which("ccx"):
-    print("skipped: CalculiX (ccx) is not installed")
-    sys.exit(SKIPPED)
+has_calculix = shutil.which("ccx") is not None
 with tempfile.TemporaryDirectory() as name:
     here = pathlib.Path(name)
     block(here / "lower.obj", 0, HEIGHT)
     block(here / "upper.obj", HEIGHT, 2 * HEIGHT)
-    contact(here, *tie(here))
+    if has_calculix:
+        contact(here, *tie(here))
     peel(here)
-sys.exit(f"{len(failures)} failed: {failures}" if failures else 0)
+if failures:
+    sys.exit(f"{len(failures)} failed: {failures}")
+if not has_calculix:
+    print("skipped: ties and contact, since CalculiX (ccx) is not installed; the cohesive layer was tested")
+    sys.exit(SKIPPED)

@@ -63,7 +63,7 @@ void require_first_order_wedges(const std::vector<InterfaceToPart>& joined, cons
 }  // namespace
 
 std::vector<InterfaceToPart> join_read_interfaces(ReadTetMesh& read, const std::string& file,
-                                                  PrepareReport& report, bool with_note) {
+                                                  PrepareReport& report) {
   const JoinedInterfaces joined = join_parted_interfaces(read.mesh);
   if (joined.other_wedges > 0)
     read.dropped.push_back(
@@ -87,7 +87,7 @@ std::vector<InterfaceToPart> join_read_interfaces(ReadTetMesh& read, const std::
                                           " that do not coincide with one of the other side",
                                   .count = faces,
                                   .done = "the sides stay apart"});
-  if (!joined.parts.empty() && with_note)
+  if (!joined.parts.empty())
     report.diagnostics.push_back(
         {.code = DiagnosticCode::interfaces_joined,
          .file = file,

@@ -111,10 +111,9 @@ struct TetInput {
 ///
 /// \param read changed
 /// \param file name of the input in messages
-/// \param with_note false: report only what is dropped
 /// \return for part_interfaces()
 std::vector<InterfaceToPart> join_read_interfaces(ReadTetMesh& read, const std::string& file,
-                                                  PrepareReport& report, bool with_note = true);
+                                                  PrepareReport& report);
 
 /// Reads a tet mesh, makes it coherent (see make_coherent()), and reports findings.
 ///
