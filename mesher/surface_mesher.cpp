@@ -249,16 +249,19 @@ class SurfaceMeshing {
   /// Smaller cells where bodies leave films of labels, as far as the budget allows after those along bodies.
   void add_cells_of_films() {
     const int max_depth = std::min(budget_.max_depth, budget_.max_possible);
-    if (max_depth == 0) return;
     using Films = LabelTuning::Films;
     const double layer = layer_around_bodies();
     const bool everywhere = volume_->protected_labels.empty();  // the layer
-    const std::vector<RefinementRegion> films =
+    const LabelFilms films =
         find_films(input_, features_.bodies, *labels_,
                    {layer, everywhere ? Films::min_share_of_layer * layer : Films::min_without_layer,
                     options_.keep_outside},
                    stages_.progress());
-    NarrowPatches cells = cells_around(films, voxels_, max_depth, budget_.base_tets);
+    NarrowPatches cells = cells_around(films.finer, voxels_, max_depth, budget_.base_tets);
+    std::vector<Vec3> narrow = films.too_thin;
+    for (const RefinementRegion& film : films.finer)
+      if (film.halvings > cells.finer.refinement) narrow.push_back(film.place);
+    if (!narrow.empty()) report_.narrow_labels = {narrow.size(), narrow.front()};
     body_cells_.cells.finer = combine(std::move(body_cells_.cells.finer), std::move(cells.finer));
     std::vector<MortonKey>& voxels = body_cells_.cells.voxels;
     voxels.insert(voxels.end(), cells.voxels.begin(), cells.voxels.end());

@@ -403,7 +403,11 @@ TetMesh improve(TetMesh mesh, const ImproveOptions& options, SimplifyReport* rep
                               .max_rounds = std::min(plan.max_rounds, Improve::max_polish_rounds),
                               .remodel = false});
     // With the connectivity changed around the last bad tets, they may improve further.
-    if (plan.max_rounds > 0) run_improvement(tools, whole, plan);
+    if (plan.max_rounds > 0) plan.max_rounds -= run_improvement(tools, whole, plan);
+    if (!options.free_count || whole.bad_tets(quality_at(engine, options.min_solid_angle)).empty()) return;
+    // The last bad tets are often stuck where the count does not allow further collapses.
+    plan.min_tets = static_cast<std::size_t>(std::ceil(count * Improve::min_free_of_bad));
+    if (plan.max_rounds > 0) improve_area(tools, whole, plan, Improve::bulk_before);
   });
   if (report) {
     report->out_of_time = !in_time;

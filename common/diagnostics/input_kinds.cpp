@@ -316,6 +316,18 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
          "--surface-space if it should carve labels)",
      .cause = "A surface in a segmented volume is only where the volume has the outside.",
      .remedy = "None if that is wanted; otherwise check units, position and space of the surface."},
+    {.code = narrow_labels,
+     .name = "narrow-labels",
+     .severity = Severity::note,
+     .title = "labels beside bodies narrower than a cell",
+     .message =
+         "bodies run less than a cell beside an interface of labels, or the border of the volume, at N "
+         "locations, the first at X Y Z (cells there are larger than the gap, and tets may be poor)",
+     .cause = "Between a body and an interface that is nearly parallel to it, smaller cells are needed than "
+              "`--max-refinement` or the number of dense tets that this may cost allow.",
+     .remedy =
+         "A higher `--max-refinement` or `--target-tets`, or a body that is moved onto the interface or "
+         "away from it."},
     {.code = surface_space_unknown,
      .name = "surface-space-unknown",
      .severity = Severity::note,

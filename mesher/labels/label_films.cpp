@@ -42,6 +42,17 @@ class FilmProbe {
     });
   }
 
+  /// Whether the border is nearer than films may be, with labels before it. Interfaces there would be left to
+  /// the layer, but the border stays as it is.
+  /// \param normal of length 1
+  bool is_too_thin_at_border(const Vec3& point, const Vec3& normal) const {
+    const double distance = to_border(point);
+    if (distance <= LabelTuning::Border::slack || distance >= options_.min_film ||
+        to_border(point + distance / Films::min_parallel * normal) >= 0)
+      return false;
+    return options_.keep_outside || sampler_->nearest(point + distance / 2 * normal).region != outside_region;
+  }
+
   /// The thickness of a film, if there is one.
   /// \param normal of length 1
   std::optional<double> thickness(const Vec3& point, const Vec3& normal) const {
@@ -88,8 +99,8 @@ class FilmProbe {
 /// A point around which cells are halved.
 struct FilmPoint {
   MortonKey cell;  ///< of the size of the layer
-  int halvings;
-  Vec3 at;  ///< lattice coordinates
+  int halvings;    ///< 0: the film is thinner than cells become
+  Vec3 at;         ///< lattice coordinates
 };
 
 /// Keeps one of the points in each cell, with the most halvings there.
@@ -119,13 +130,15 @@ class FilmSearch {
       if (!(across.norm() > 0)) return;
       const Vec3 normal = across.normalized();
       for_each_point(corners, spacing(), [&](const Vec3& point) {
+        if (probe.is_too_thin_at_border(point, normal)) add(point, 0);
         const std::optional<double> film = probe.thickness(point, normal);
         if (!film) return;
         const Vec3 within = frame.to_input(point + *film / 2 * normal);
         if (std::any_of(others.begin(), others.end(),
                         [&](const SurfaceTree* other) { return other->winding_number(within) > 0.5; }))
           return;
-        for (const double off : {0.0, *film}) add(point + off * normal, probe.halvings(*film));
+        if (const int halvings = probe.halvings(*film); halvings > 0)
+          for (const double off : {0.0, *film}) add(point + off * normal, halvings);
       });
     });
   }
@@ -144,12 +157,18 @@ class FilmSearch {
       }
     });
   }
-  std::vector<RefinementRegion> take() {
+  LabelFilms take() {
     keep_one_in_each_cell(points_);
-    std::vector<RefinementRegion> regions;
-    regions.reserve(points_.size());
-    for (const FilmPoint& p : points_) regions.push_back({labels_.frame().to_input(p.at), p.halvings});
-    return regions;
+    LabelFilms films;
+    films.finer.reserve(points_.size());
+    for (const FilmPoint& p : points_) {
+      const Vec3 at = labels_.frame().to_input(p.at);
+      if (p.halvings > 0)
+        films.finer.push_back({at, p.halvings});
+      else
+        films.too_thin.push_back(at);
+    }
+    return films;
   }
 
  private:
@@ -164,7 +183,6 @@ class FilmSearch {
           if (progress_) progress_->throw_if_stopped();
           const FilmProbe probe(labels_, options_);
           const auto add = [&](const Vec3& point, int halvings) {
-            if (halvings <= 0) return;
             std::array<int, 3> cell;
             for (int a = 0; a < 3; ++a)
               cell[a] = std::max(0, static_cast<int>(std::floor(point[a] / options_.layer)));
@@ -184,9 +202,8 @@ class FilmSearch {
 
 }  // namespace
 
-std::vector<RefinementRegion> find_films(const MesherInput& bodies,
-                                         const std::vector<SurfacePatches>& patches, const LabelField& labels,
-                                         const FilmOptions& options, const Progress* progress) {
+LabelFilms find_films(const MesherInput& bodies, const std::vector<SurfacePatches>& patches,
+                      const LabelField& labels, const FilmOptions& options, const Progress* progress) {
   if (options.layer >= Films::max_thickness) return {};
   std::vector<SurfaceTree> trees;
   if (bodies.bodies.size() > 1)

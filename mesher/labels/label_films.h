@@ -18,6 +18,13 @@ struct FilmOptions {
   bool keep_outside;  ///< the outside is meshed, so that its films count
 };
 
+/// Films of labels beside bodies, input units.
+struct LabelFilms {
+  std::vector<RefinementRegion> finer;  ///< points along surfaces, interfaces and creases
+  /// Points of bodies at films between them and the border of the volume that are thinner than cells become.
+  std::vector<Vec3> too_thin;
+};
+
 /// Finds films: where a body's outer side is less than a cell from a nearly parallel interface of labels, or
 /// from the border of the volume. Cells must be halved there until one fits between them. The same holds
 /// along creases that an interface follows within the layer, since a film ends there. Parallel over triangles
@@ -25,10 +32,8 @@ struct FilmOptions {
 /// \param patches of each body
 /// \param labels unrefined
 /// \param progress may be null
-/// \return points along surfaces, interfaces and creases
 /// \throws Interrupted
-std::vector<RefinementRegion> find_films(const MesherInput& bodies,
-                                         const std::vector<SurfacePatches>& patches, const LabelField& labels,
-                                         const FilmOptions& options, const Progress* progress);
+LabelFilms find_films(const MesherInput& bodies, const std::vector<SurfacePatches>& patches,
+                      const LabelField& labels, const FilmOptions& options, const Progress* progress);
 
 }  // namespace tetwright

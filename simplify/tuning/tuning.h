@@ -366,6 +366,9 @@ struct SimplifyTuning {
     /// Min and max factor on the count with ImproveOptions::free_count, so that no detail is lost and no mesh
     /// grows without bound.
     static constexpr double min_free = 0.8, max_free = 4;
+    /// Min factor while tets are still below the bound at the end: where most points are random ones between
+    /// the faces of a coarse surface, good shapes need far fewer of them.
+    static constexpr double min_free_of_bad = 0.5;
     /// Max relative change of the count; 5 % is guaranteed.
     static constexpr double slack = 0.045;
     /// E, in edges of a regular mesh of that count: the paper's initial E.

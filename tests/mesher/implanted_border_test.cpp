@@ -260,6 +260,21 @@ TEST(ImplantedBorder, ThinRodsInLongVoxelsTakeTheirVolume) {
   EXPECT_NEAR(taken, 8 * 8 * 1.2 * 0.12, 0.05 * 8 * 8 * 1.2 * 0.12);
 }
 
+/// A gap of labels between a face of a body at x = 10 and the interface of the labels at x = 9.5.
+TEST(ImplantedBorder, GapsThatCellsDoNotResolveAreNamed) {
+  const LabelInput labels = halves({20, 14, 12});
+  const ImplantedVolume volume = implanted(labels, {make_box(Vec3(10, 4, 3), Vec3(15, 9, 8))});
+  EXPECT_EQ(checked(volume).report.narrow_labels.places, 0u);
+  MesherOptions options = cells_of(1);
+  options.max_refinement = 0;
+  const NarrowLabelsReport narrow = checked(volume, options).report.narrow_labels;
+  EXPECT_GT(narrow.places, 20u);
+  EXPECT_TRUE(narrow.first.x() >= 9.49 && narrow.first.x() <= 10) << narrow.first.transpose();
+  // Without such a gap.
+  const ImplantedVolume apart = implanted(labels, {make_box(Vec3(11.5, 4, 3), Vec3(15, 9, 8))});
+  EXPECT_EQ(checked(apart, options).report.narrow_labels.places, 0u);
+}
+
 TEST(ImplantedBorder, BodiesOffAllLabelsAreNamed) {
   const LabelInput labels = make_labels({20, 14, 12}, [](int x, int, int) { return x < 6 ? 1 : 0; });
   const ImplantedVolume volume = implanted(labels, {box_at(Vec3(14, 6.6, 5.7), Vec3(2, 2, 2))});

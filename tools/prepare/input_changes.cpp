@@ -374,6 +374,16 @@ void find_small_parts(PrepareReport& report) {
                                   .what = "'" + name + "' is in no label of the volume, only outside",
                                   .done = "meshed beside them; check its position and --surface-space if it "
                                           "should carve labels"});
+  if (const NarrowLabelsReport& narrow = report.mesher->narrow_labels; narrow.places > 0)
+    report.diagnostics.push_back(
+        {.code = DiagnosticCode::narrow_labels,
+         .what =
+             "bodies run less than a cell beside an interface of labels, or the border of the volume, at " +
+             std::to_string(narrow.places) +
+             (narrow.places == 1 ? " location, at " : " locations, the first at ") + place_text(narrow.first),
+         .done = "cells there are larger than the gap, so that tets may be poor",
+         .remedy = "raise --max-refinement or --target-tets, or move the body",
+         .places = {narrow.first}});
   for (const ThinPartReport& t : report.mesher->thin_parts) find_thin_part(t, report);
 }
 

@@ -339,6 +339,7 @@ void add_mesher_json(const MesherReport& m, nlohmann::json& dense) {
                                    {"places", t.places},
                                    {"first", place_json(t.first)},
                                    {"refined", t.refined}});
+  dense["narrow_labels"] = {{"places", m.narrow_labels.places}, {"first", place_json(m.narrow_labels.first)}};
   dense["filling_tets"] = m.filling_tets;
   dense["thickened_walls"] = {{"points", m.thickened.points},
                               {"offset", m.thickened.offset},

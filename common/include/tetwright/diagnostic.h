@@ -107,6 +107,7 @@ enum class DiagnosticCode : std::uint8_t {
   space_unknown,
   volume_enlarged,
   body_off_labels,
+  narrow_labels,
   surface_space_unknown,
   // Tet meshes.
   tet_points_merged,

@@ -68,6 +68,13 @@ struct ThinPartReport {
   bool refined = false;
 };
 
+/// Where a body's surface is less than a cell from a nearly parallel interface of labels, or from the border
+/// of the volume, and cells there are still larger than the gap: tets there may be poor.
+struct NarrowLabelsReport {
+  std::size_t places = 0;
+  Vec3 first = Vec3::Zero();  ///< position of one of them, input units
+};
+
 /// Walls shown thicker than they are because the cells are too large. All but `points` describe the worst
 /// point.
 struct ThickenedWallsReport {
@@ -143,6 +150,7 @@ struct MesherReport {
   std::size_t isolated_vertices = 0;  ///< components and cavities of one lattice point, omitted
   std::vector<ThinPartReport> thin_parts;
   ThickenedWallsReport thickened;
+  NarrowLabelsReport narrow_labels;  ///< of a segmented volume with bodies
   StripReport strips;
   std::vector<ClosedGapReport> closed_gaps;
   /// Approximate number of well-shaped tets that fill thin walls with parallel sides; 0 without any.

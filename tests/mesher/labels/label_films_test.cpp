@@ -25,7 +25,7 @@ class LabelFilms : public testing::Test {
   void use(LabelInput labels) {
     field_ = LabelField::make(labels, label_frame(labels, 1, false), false, nullptr);
   }
-  std::vector<RefinementRegion> films(std::vector<TriangleMesh> surfaces, double min_film = 0.95 * layer) {
+  tetwright::LabelFilms all_films(std::vector<TriangleMesh> surfaces, double min_film = 0.95 * layer) {
     std::vector<MaterialSurface> named;
     for (TriangleMesh& s : surfaces)
       named.push_back({.name = "body_" + std::to_string(named.size()),
@@ -37,6 +37,9 @@ class LabelFilms : public testing::Test {
     for (const MesherInput::Body& b : input.bodies)
       patches.push_back(find_patches(b.surface.points, b.surface.triangles, {}, {}, "body.off"));
     return find_films(input, patches, *field_, {layer, min_film, false}, nullptr);
+  }
+  std::vector<RefinementRegion> films(std::vector<TriangleMesh> surfaces, double min_film = 0.95 * layer) {
+    return all_films(std::move(surfaces), min_film).finer;
   }
   std::vector<RefinementRegion> films_of(const TriangleMesh& surface) { return films({surface}); }
   static TriangleMesh box_at(double x) { return make_box(Vec3(x, 6, 6), Vec3(18, 16, 17)); }
@@ -94,9 +97,19 @@ TEST_F(LabelFilms, AtTheBorder) {
   EXPECT_FALSE(found.empty());
   for (const RefinementRegion& r : found) EXPECT_EQ(r.halvings, 2);
   EXPECT_TRUE(films_of(make_box(Vec3(16, 6, 6), Vec3(23.5, 16, 17))).empty());
+  // The border cannot turn towards the body, as interfaces do.
+  const auto too_thin = [&](double x) {
+    return all_films({make_box(Vec3(16, 6, 6), Vec3(x, 16, 17))}).too_thin;
+  };
+  EXPECT_TRUE(too_thin(23.1).empty());
+  EXPECT_GT(too_thin(23.4).size(), 100u);
+  for (const Vec3& p : too_thin(23.4)) EXPECT_NEAR(p.x(), 23.4, 1e-9);
+  EXPECT_TRUE(too_thin(23.495).empty());
+  EXPECT_TRUE(all_films({box_at(11.6)}).too_thin.empty());
   // The outside is not meshed, but the gap to a label is.
   use(make_labels({24, 24, 24}, [](int x, int, int) { return x < 12 ? 1 : 0; }));
   EXPECT_TRUE(films_of(make_box(Vec3(16, 6, 6), Vec3(23.1, 16, 17))).empty());
+  EXPECT_TRUE(too_thin(23.4).empty());
   EXPECT_FALSE(films_of(box_at(12)).empty());
 }
 
