@@ -227,6 +227,16 @@ constexpr std::array request_table = std::to_array<DiagnosticKind>({
          "A face belongs to one group: a `--select` takes faces from the groups of the input, and an earlier "
          "`--select` keeps its own.",
      .remedy = "None needed; rules joined by `and` that exclude the faces keep them in their group."},
+    {.code = point_off_patch,
+     .name = "point-off-patch",
+     .severity = Severity::note,
+     .title = "point far from its patch",
+     .message = "--select NAME: the point of 'RULE' is D from the nearest face",
+     .cause = "`patch-at` selects the patch of the nearest face, however far that is; here by more than 1 % "
+              "of the "
+              "diagonal.",
+     .remedy = "Check the point's coordinates and units; the report page prints the rule of a patch that is "
+               "clicked."},
     {.code = gap_closed,
      .name = "gap-closed",
      .severity = Severity::note,

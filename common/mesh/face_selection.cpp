@@ -28,6 +28,9 @@ namespace {
 constexpr double rounding_of_corners = 1e-9;
 /// Rounding of angles: the normal of a face in a plane of any direction has its angle to 1e-7 degrees.
 constexpr double rounding_of_degrees = 1e-6;
+/// Max distance of a PatchAt rule's point from the boundary that goes without saying, as a share of the
+/// diagonal: points picked on a surface are nearer to its mesh.
+constexpr double max_share_beside_patch = 0.01;
 
 // Parsing.
 
@@ -189,6 +192,15 @@ class Measure {
     return std::visit([&](const auto& rule) { return misses(rule); }, term.rule);
   }
 
+  /// The distance of a PatchAt rule's point from the nearest face if it is large, else 0.
+  double far_off(const SelectionTerm& term) const {
+    const auto* patch = std::get_if<PatchAt>(&term.rule);
+    if (patch == nullptr || boundary_.empty()) return 0;
+    const std::vector<double> distances = distances_from(patch->point);
+    const double distance = *std::min_element(distances.begin(), distances.end());
+    return distance > max_share_beside_patch * diagonal_ ? distance : 0;
+  }
+
   static bool in_degrees(const SelectionTerm& term) { return std::holds_alternative<WithNormal>(term.rule); }
 
   Vec3 centre(std::size_t boundary_face) const {
@@ -270,21 +282,25 @@ class Measure {
   }
 
   std::vector<double> misses(const PatchAt& rule) const {
+    std::vector<double> result = distances_from(rule.point);
+    if (boundary_.empty()) return result;
+    const auto nearest =
+        static_cast<std::size_t>(std::min_element(result.begin(), result.end()) - result.begin());
+    // Only connected faces fulfil the rule, also where others touch the point.
+    for (double& miss : result) miss = std::max(miss, std::numeric_limits<double>::min());
+    for (const std::size_t f : connected_with(nearest)) result[f] = 0;
+    return result;
+  }
+  /// By boundary face.
+  std::vector<double> distances_from(const Vec3& point) const {
     std::vector<double> result;
     result.reserve(boundary_.size());
-    std::size_t nearest = 0;
-    for (std::size_t f = 0; f < boundary_.size(); ++f) {
-      const Triangle& ids = mesh_.interfaces[boundary_[f]].ids;
+    for (const std::size_t face : boundary_) {
+      const Triangle& ids = mesh_.interfaces[face].ids;
       result.push_back(
-          (closest_point(rule.point, mesh_.points[ids[0]], mesh_.points[ids[1]], mesh_.points[ids[2]]) -
-           rule.point)
+          (closest_point(point, mesh_.points[ids[0]], mesh_.points[ids[1]], mesh_.points[ids[2]]) - point)
               .norm());
-      if (result[f] < result[nearest]) nearest = f;
-      // Only connected faces fulfil the rule, also where others touch the point.
-      result[f] = std::max(result[f], std::numeric_limits<double>::min());
     }
-    if (boundary_.empty()) return result;
-    for (const std::size_t f : connected_with(nearest)) result[f] = 0;
     return result;
   }
 
@@ -391,6 +407,9 @@ std::vector<SelectedFaces> select_faces(TetMesh& mesh, const std::vector<FaceSel
       result.area += measure.area(f);
     }
     if (result.faces == 0) find_nearest(selections[s], misses, measure, result);
+    for (const SelectionTerm& term : selections[s].terms)
+      if (const double distance = measure.far_off(term); distance > 0)
+        result.far_points.emplace_back(term.text, distance);
   }
   NewPatches patches(mesh);
   std::map<std::pair<std::size_t, InterfacePatch>, std::uint16_t> patch_of;

@@ -32,6 +32,13 @@ void report_taken(const SelectedFaces& selected, PrepareReport& report) {
                                   .done = "left to an earlier --select"});
 }
 
+void report_far_points(const SelectedFaces& selected, PrepareReport& report) {
+  for (const auto& [rule, distance] : selected.far_points)
+    report.diagnostics.push_back({.code = DiagnosticCode::point_off_patch,
+                                  .what = "--select " + selected.name + ": the point of " + in_quotes(rule) +
+                                          " is " + short_number(distance) + " from the nearest face"});
+}
+
 }  // namespace
 
 void select_faces_of(Prepared& result, PrepareRun& run) {
@@ -41,6 +48,7 @@ void select_faces_of(Prepared& result, PrepareRun& run) {
   for (const SelectedFaces& selected : report.selected) {
     if (selected.faces == 0) report_empty(selected, report);
     report_taken(selected, report);
+    report_far_points(selected, report);
   }
   decide_severities(run.options.acceptance, report);
 }

@@ -50,6 +50,7 @@ enum class DiagnosticCode : std::uint8_t {
   parts_touch,
   faces_not_parted,
   faces_regrouped,
+  point_off_patch,
   gap_closed,
   wall_left_out,
   crease_patches_dropped,

@@ -87,6 +87,9 @@ struct SelectedFaces {
   std::size_t in_earlier = 0;              ///< faces that an earlier selection has
   std::string nearest = {};                ///< without faces: what was nearest, for messages
   std::optional<Vec3> nearest_place = {};  ///< centre of that face
+  /// PatchAt rules whose point is more than 1 % of the diagonal of the mesh's bounding box from the nearest
+  /// face, as given, with that distance in input units.
+  std::vector<std::pair<std::string, double>> far_points = {};
 };
 
 /// Selects boundary faces of a mesh and makes each selection a group of its faces. A face that several rules

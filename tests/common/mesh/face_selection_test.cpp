@@ -111,6 +111,18 @@ TEST(FaceSelection, PatchesEndAtCreasesAndMaterials) {
             faces_where(mesh, [](const Vec3& p) { return p.x() == 4 && p.z() >= 2; }));
 }
 
+// The nearest face is selected however far it is, but not in silence.
+TEST(FaceSelection, PointsFarFromTheirPatchAreNamed) {
+  TetMesh mesh = cube_with_sides();
+  const std::vector<SelectedFaces> found =
+      select_faces(mesh, {parse_face_selection("far", "patch-at:2,2,7 and normal:0,0,1,5"),
+                          parse_face_selection("near", "patch-at:4.05,1,1")});
+  using FarPoints = std::vector<std::pair<std::string, double>>;
+  EXPECT_EQ(found[0].far_points, (FarPoints{{"patch-at:2,2,7", 3.0}}));
+  EXPECT_GT(found[0].faces, 0u);
+  EXPECT_EQ(found[1].far_points, FarPoints());
+}
+
 // Other patches touch the point, too.
 TEST(FaceSelection, APatchIsAlsoWholeAtACornerOrEdge) {
   for (const char* rule : {"patch-at:4,4,4", "patch-at:4,0,1", "patch-at:0,0,0", "patch-at:2,0,0"}) {

@@ -187,6 +187,9 @@ TEST_F(PartedBoxes, SelectionsAreGroupsInFiles) {
   const auto selections = nlohmann::json::parse(contents(path("stats.json"))).at("selections");
   EXPECT_NEAR(selections.at(0).at("area").get<double>(), 6, 1e-9);
   EXPECT_NEAR(selections.at(1).at("area").get<double>(), 4, 1e-9);
+  EXPECT_NE(
+      contents(path("stats.json")).find("the point of \\\"patch-at:1,1,-1\\\" is 1 from the nearest face"),
+      std::string::npos);
   const std::set<std::string> names = groups(path("m.inp"));
   EXPECT_TRUE(names.contains("top") && names.contains("seat") && names.contains("bone|implant:bone"));
   // Meshes are selected from, too; the mesh is written although a rule selects nothing.
