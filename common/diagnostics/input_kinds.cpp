@@ -298,7 +298,8 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
      .message = "N inputs in another space, scanner-xyz (taken as they are, since it cannot be compared with "
                 "that of the first one, right-anterior-superior)",
      .cause = "A header names no coordinate system, or one that is not anatomical.",
-     .remedy = "Check that the parts lie where they should; write the coordinate system into the header."},
+     .remedy = "Check that the parts lie where they should; write the coordinate system into the header, or "
+               "name that of a tet mesh by `--mesh-space`."},
     {.code = volume_enlarged,
      .name = "volume-enlarged",
      .severity = Severity::note,
@@ -331,12 +332,12 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
     {.code = surface_space_unknown,
      .name = "surface-space-unknown",
      .severity = Severity::note,
-     .title = "surfaces without a coordinate system",
+     .title = "surfaces or sizes without a coordinate system",
      .message =
          "N surfaces whose file names no space: 'NAME', 'NAME' (taken as they are, in that of the first "
          "input, right-anterior-superior)",
-     .cause = "Files of surfaces need not name their coordinate system; 3D Slicer writes `SPACE=LPS` or "
-              "`SPACE=RAS` into their headers.",
+     .cause = "Files of surfaces and size fields need not name their coordinate system; 3D Slicer writes "
+              "`SPACE=LPS` or `SPACE=RAS` into their headers.",
      .remedy =
          "None needed if they are in that of the first input. Otherwise `--surface-space LPS` or `RAS`."},
     {.code = tet_points_merged,

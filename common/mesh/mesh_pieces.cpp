@@ -154,6 +154,7 @@ void MeshPieces::describe_whole() {
   const std::set<MaterialTag> tags(mesh_.materials.begin(), mesh_.materials.end());
   whole_.names.materials.assign(tags.begin(), tags.end());
   whole_.names.material_names = mesh_.material_names;
+  whole_.names.space = mesh_.space;
   whole_.names.patch_groups = mesh_.patch_groups;
   std::set<InterfacePatch> patches;
   for (const InterfaceTriangle& t : mesh_.interfaces)
@@ -195,6 +196,7 @@ MeshPiece MeshPieces::piece(PartNumber part) const {
     piece.tet_owners.push_back(partition_.of(t));
   }
   piece.mesh.material_names = mesh_.material_names;
+  piece.mesh.space = mesh_.space;
   piece.mesh.patch_groups = mesh_.patch_groups;
   piece.mesh.cell_fields = chosen_fields(mesh_.cell_fields, tets, whole_.cell_types);
   if (midside_) copy_midside_nodes(tets, points, piece);
@@ -288,6 +290,7 @@ OrderedMesh ordered_by_part(const MeshPieces& pieces) {
   ordered.cell_fields = chosen_fields(mesh.cell_fields, tets, pieces.whole().cell_types);
   ordered.cell_fields.insert(ordered.cell_fields.begin(), std::move(part_of));
   ordered.material_names = mesh.material_names;
+  ordered.space = mesh.space;
   ordered.patch_groups = mesh.patch_groups;
   ordered.interfaces = mesh.interfaces;
   for (InterfaceTriangle& t : ordered.interfaces)

@@ -63,7 +63,7 @@ class PointLengths {
 class TetMeshSizes : public SizeSource {
  public:
   TetMeshSizes(TetMesh mesh, std::vector<double> lengths, std::string field)
-      : SizeSource(std::move(field)),
+      : SizeSource(std::move(field), mesh.space),
         mesh_(std::move(mesh)),
         of_points_(std::move(lengths), used_points(mesh_.tets, mesh_.points.size())),
         reach_(tolerance::within_mesh * of_points_.diagonal(mesh_.points)),
@@ -96,7 +96,7 @@ std::vector<ProjectionTree::Item> items_of(const std::vector<Triangle>& triangle
 class SurfaceSizes : public SizeSource {
  public:
   SurfaceSizes(TriangleMesh surface, std::vector<double> lengths, std::string field)
-      : SizeSource(std::move(field)),
+      : SizeSource(std::move(field), surface.space),
         of_points_(std::move(lengths), used_points(surface.triangles, surface.points.size())),
         tree_(std::move(surface.points), items_of(surface.triangles)) {}
 

@@ -3,6 +3,7 @@
 
 #include "common/samples/samples.h"
 #include "tetwright/label_volume.h"
+#include "tetwright/sizes.h"
 #include "tetwright/surface_mesh.h"
 
 namespace tetwright::coordinate_space_test {
@@ -51,6 +52,26 @@ TEST(CoordinateSpace, AnUnknownOneIsKept) {
     EXPECT_EQ(surface.space, from);
     EXPECT_EQ(surface.points[0], Vec3(1, 2, 3));
   }
+}
+
+TEST(CoordinateSpace, OfSizesChangesWhereTheyAre) {
+  TetMesh tet{{{1, 2, 3}, {2, 2, 3}, {1, 3, 3}, {1, 2, 4}}, {{0, 1, 2, 3}}, {1}, {}};
+  tet.space = lps;
+  const std::shared_ptr<const SizeSource> sizes = tet_mesh_sizes(tet, {5, 6, 7, 8}, "size");
+  EXPECT_EQ(sizes->space(), lps);
+  const auto changed = change_space(sizes, lps, ras);
+  ASSERT_TRUE(changed);
+  EXPECT_EQ(changed->space(), ras);
+  EXPECT_EQ(changed->field(), "size");
+  EXPECT_TRUE(changed->fills_space());
+  EXPECT_FALSE(changed->at({1, 2, 3}));
+  ASSERT_TRUE(changed->at({-2, -2, 3}));
+  EXPECT_EQ(changed->at({-2, -2, 3})->length, 6);
+  std::vector<Vec3> places;
+  changed->for_each_value([&](const Vec3& place, double) { places.push_back(place); });
+  EXPECT_EQ(places, (std::vector<Vec3>{{-1, -2, 3}, {-2, -2, 3}, {-1, -3, 3}, {-1, -2, 4}}));
+  for (const auto& [from, to] : {std::pair{"", lps}, {lps, ""}, {lps, lps}, {lps, "scanner-xyz"}})
+    EXPECT_FALSE(change_space(sizes, from, to));
 }
 
 }  // namespace

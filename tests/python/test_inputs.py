@@ -438,3 +438,18 @@ def test_surfaces_are_brought_into_the_space_of_the_first(tmp_path):
     assert made.points.min(axis=0) == pytest.approx([-4, -4, 0]) and "far.obj' (brought into that of" in str(made.notes)
     with pytest.raises(tetwright.UsageError, match="'LAS' is not LPS or RAS"):
         tetwright.mesh(CUBE, surface_space="LAS", resolution=8)
+
+
+def test_surfaces_are_brought_into_the_space_of_a_mesh(tmp_path):
+    def write(name, space, factor):
+        path = tmp_path / name
+        path.write_text(f"# SPACE={space}\n" + "".join(f"v {factor * x} {factor * y} {z}\n" for x, y, z in FAR_CUBE[0])
+                        + "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in CUBE_TRIANGLES))
+        return path
+    mesh = tetwright.mesh(write("ras.obj", "RAS", 1), resolution=8)
+    assert mesh.space == "right-anterior-superior"
+    mesh.write(tmp_path / "m.vtu")
+    assert tetwright.read(tmp_path / "m.vtu").space == mesh.space
+    assert "(brought into that of the first input" in str(tetwright.check(mesh, surface=write("lps.obj", "LPS", -1)).notes)
+    with pytest.raises(tetwright.InputError, match="does not meet"):
+        tetwright.check(mesh, surface=write("lps.obj", "LPS", 1))

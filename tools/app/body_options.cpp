@@ -35,7 +35,29 @@ void add_rule(CLI::App& app, const std::string& name, Rule& to,
       ->default_str(rules[0].first);
 }
 
+/// Adds an option whose value is LPS or RAS.
+void add_space(CLI::App& app, const std::string& name, std::string& to, const std::string& description) {
+  add_parsed<std::string>(
+      app, name, to, "LPS|RAS",
+      [name](const std::string& text) {
+        std::string space = space_called(text);
+        if (space.empty()) throw CLI::ValidationError(name, "'" + text + "' is not LPS or RAS");
+        return space;
+      },
+      description);
+}
+
 }  // namespace
+
+void add_surface_space(CLI::App& app, CommandLine& c, const std::string& description) {
+  add_space(app, "--surface-space", c.options.bodies.surface_space, description);
+}
+
+void add_mesh_space(CLI::App& app, CommandLine& c) {
+  add_space(
+      app, "--mesh-space", c.options.mesh_space,
+      "Coordinate system of MESH if its file names none; all other inputs are brought into that of MESH");
+}
 
 void add_bodies(CLI::App& app, CommandLine& c) {
   app.add_option_function<std::vector<std::string>>(
@@ -71,15 +93,9 @@ void add_bodies(CLI::App& app, CommandLine& c) {
        {"material", NestedRule::material}},
       "Treat closed parts inside others as: cavity, solid, material (a separate one), or auto "
       "(cavities if wound the opposite way, else solid)");
-  add_parsed<std::string>(
-      app, "--surface-space", c.options.bodies.surface_space, "LPS|RAS",
-      [](const std::string& text) {
-        std::string space = space_called(text);
-        if (space.empty()) throw CLI::ValidationError("--surface-space", "'" + text + "' is not LPS or RAS");
-        return space;
-      },
-      "Coordinate system of surfaces whose files name none; all inputs are brought into that of the first "
-      "one (default: that of the first one)");
+  add_surface_space(app, c,
+                    "Coordinate system of surfaces and size fields whose files name none; all inputs are "
+                    "brought into that of the first one (default: that of the first one)");
   add_length(app, "--contact-tolerance", c.options.bodies.contact_tolerance,
              "Join bodies across gaps and overlaps up to this")
       ->default_str("0.001%");

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <string>
+
 namespace CLI {
 class App;
 }
@@ -14,5 +16,10 @@ struct CommandLine;
 ///
 /// \pre `line` outlives `app`.
 void add_bodies(CLI::App& app, CommandLine& line);
+
+/// Adds --surface-space, the space of surfaces whose files name none.
+void add_surface_space(CLI::App& app, CommandLine& line, const std::string& description);
+/// Adds --mesh-space, the space of a tet mesh whose file names none.
+void add_mesh_space(CLI::App& app, CommandLine& line);
 
 }  // namespace tetwright

@@ -288,6 +288,13 @@ std::string scans() {
 }
 std::string meshes() { return "Tet mesh: " + known_extensions(FileKind::tet_mesh); }
 
+/// Adds the spaces of a tet mesh and of surfaces that it is compared with.
+void add_spaces(CLI::App& app, CommandLine& c, const std::string& what) {
+  add_mesh_space(app, c);
+  add_surface_space(app, c,
+                    "Coordinate system of " + what + " if its file names none (default: that of MESH)");
+}
+
 void add_fix_boundary(CLI::App& app, CommandLine& c) {
   app.add_flag("--fix-boundary", c.options.shapes.fix_boundary,
                "Keep the points and faces of the boundary and of interfaces between materials as they are");
@@ -342,6 +349,7 @@ void add_simplify(CLI::App& app, CommandLine& c) {
   add_values_options(app, c);
   add_selections(app, c);
   add_interface_options(app, c);
+  add_spaces(app, c, "a --size-field");
   add_strict(app, c);
   add_material_field(app, c);
   add_stats(app, c);
@@ -367,6 +375,7 @@ void add_improve(CLI::App& app, CommandLine& c) {
   add_values_options(app, c);
   add_selections(app, c);
   add_interface_options(app, c);
+  add_mesh_space(app, c);
   add_strict(app, c);
   add_material_field(app, c);
   add_stats(app, c);
@@ -389,6 +398,7 @@ void add_values(CLI::App& app, CommandLine& c) {
   add_input_format(app, c);
   add_mesh_output(app, c, false);
   add_value_rules(app, c);
+  add_mesh_space(app, c);
   add_strict(app, c);
   add_material_field(app, c);
   add_stats(app, c);
@@ -409,6 +419,7 @@ void add_embed(CLI::App& app, CommandLine& c) {
   app.add_option("--output-format", c.outputs.format,
                  "Format in place of the extension, and of standard output (-o -): npz, json")
       ->type_name("NAME");
+  add_spaces(app, c, "SURFACE");
   add_stats(app, c);
   add_common(app, c);
 }
@@ -426,6 +437,7 @@ void add_check(CLI::App& app, CommandLine& c) {
   add_length(app, "--tolerance", c.options.target.tolerance,
              "Status 1 unless MESH and the surfaces are proven to be within this of each other everywhere, "
              "input units or percent of the surfaces' diagonal");
+  add_spaces(app, c, "a --surface");
   app.add_flag("--json", c.check.json, "Print JSON");
   add_report(app, c);
   add_material_field(app, c);

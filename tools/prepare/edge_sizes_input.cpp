@@ -3,11 +3,40 @@
 
 #include <memory>
 
+#include "common/images/grid_box.h"
 #include "common/message_text.h"
 #include "tetwright/error.h"
 #include "tools/prepare/size_field_file.h"
+#include "tools/prepare/surface_spaces.h"
 
 namespace tetwright {
+
+namespace {
+
+void bring_into_space_of_first(const SizeFieldInput& field, PrepareRun& run) {
+  PrepareReport& report = run.report;
+  const std::string& given = run.options.bodies.surface_space;
+  // A value in memory is in the coordinates of the caller's other ones unless it says so.
+  if (field.source && field.source->space().empty() && given.empty()) return;
+  SurfaceSpaces spaces(given, "size field");
+  spaces.begin_with(report.space_of_result(), report.inputs.front(),
+                    run.task == Task::simplify || run.task == Task::improve);
+  spaces.add(report.sizes.source, field.name);
+  const std::vector<Diagnostic> findings = spaces.findings();
+  report.diagnostics.insert(report.diagnostics.end(), findings.begin(), findings.end());
+}
+
+/// Refuses sizes within a volume that the input does not meet. Those of a surface count anywhere.
+void require_sizes_meet(const SizeSource& sizes, const std::string& file, const Box3& box,
+                        const std::string& input) {
+  if (!sizes.fills_space()) return;
+  Box3 of_sizes;
+  sizes.for_each_value([&](const Vec3& place, double) { of_sizes.add(place); });
+  if (!of_sizes.intersects(box))
+    throw boxes_apart(file, "it has no sizes in " + input, "it", of_sizes, input, box);
+}
+
+}  // namespace
 
 void read_sizes(PrepareRun& run, const Box3& box) {
   const SizeOptions& asked = run.options.sizes;
@@ -21,7 +50,9 @@ void read_sizes(PrepareRun& run, const Box3& box) {
                      short_number(sizes.limits.min_edge) + "; give a larger one, or leave one of them out");
   if (!asked.field) return;
   sizes.source = asked.field->source ? asked.field->source : read_size_field(asked.field->name);
+  bring_into_space_of_first(*asked.field, run);
   if (!(diagonal > 0)) return;  // nothing to mesh; reported elsewhere
+  require_sizes_meet(*sizes.source, asked.field->name, box, run.report.inputs.front());
   sizes.target_length =
       std::make_shared<const SizeField>(*sizes.source, box.low, box.high, wanted_within(sizes.limits));
 }

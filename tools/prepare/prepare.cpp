@@ -164,6 +164,7 @@ Prepared carry_out(std::vector<Input> inputs, PrepareRun& run) {
     select_faces_of(result, run);
     part_result(result, joined, run);
   }
+  result.mesh.space = run.report.space_of_result();
   result.midside = std::move(run.midside);
   result.scratch = std::move(run.scratch);
   run.progress.throw_if_stopped();
@@ -239,6 +240,8 @@ void check_options(Task task, const PrepareOptions& options) {
           "--schedule paper does not bound edges; leave out --size-field, --min-edge and --max-edge, or "
           "--schedule");
   }
+  if (task == Task::simplify && !options.bodies.surface_space.empty() && !sizes.field)
+    throw UsageError("--surface-space is for a size field; give --size-field FILE");
   if (target.tolerance && options.schedule.kind == Schedule::paper)
     throw UsageError("--schedule paper does not bound distances; leave out --tolerance, or --schedule");
   if (const std::optional<double>& p = options.images.outside_probability; p && !(*p >= 0 && *p <= 1))

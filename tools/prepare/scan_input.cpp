@@ -86,8 +86,8 @@ void check_body_options(const PrepareOptions& options) {
   if (!bodies.caps.empty()) throw UsageError("--cap is for surfaces, and the input is a segmented volume");
   if (bodies.base || bodies.thickness)
     throw UsageError("--base and --thicken are for surfaces, and the input is a segmented volume");
-  if (!bodies.surface_space.empty())
-    throw UsageError("--surface-space is for surfaces, and the input is a segmented volume");
+  if (!bodies.surface_space.empty() && !options.sizes.field)
+    throw UsageError("--surface-space is for surfaces and size fields, and the input is a segmented volume");
   if (options.labels.protects_any())
     throw UsageError("--protect-labels is for surfaces in a segmented volume, and there is no surface");
 }

@@ -2,6 +2,7 @@
 #include "tools/prepare/surface_spaces.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/message_text.h"
 #include "tetwright/error.h"
@@ -24,17 +25,27 @@ std::string known_or_not(const std::string& space) { return space.empty() ? "unk
 
 }  // namespace
 
-void SurfaceSpaces::begin_with(const std::string& space, const std::string& file) {
+void SurfaceSpaces::begin_with(const std::string& space, const std::string& file, bool tet_mesh) {
   first_file_ = file;
   first_space_ = space;
+  first_is_tet_mesh_ = tet_mesh;
   if (of_others_.empty() || of_others_ == first_space_) return;
   TriangleMesh nothing;
   nothing.space = of_others_;
   if (!change_space(nothing, first_space_))
-    throw UsageError(
-        "--surface-space: the space of the first input, " + file + ", is " + known_or_not(first_space_) +
-        ", and surfaces cannot be brought into it; write LPS or RAS into its header, or leave the "
-        "option out");
+    throw UsageError("--surface-space: the space of the first input, " + file + ", is " +
+                     known_or_not(first_space_) + ", and " + what_ + "s cannot be brought into it; " +
+                     (tet_mesh ? "name it by --mesh-space LPS or RAS" : "write LPS or RAS into its header") +
+                     ", or leave the option out");
+}
+
+void SurfaceSpaces::note(const std::string& before, bool converted, const std::string& file) {
+  if (converted)
+    converted_[before].push_back(file);
+  else if (before.empty())
+    without_space_.push_back(file);
+  else if (before != first_space_)
+    not_comparable_[before].push_back(file);
 }
 
 void SurfaceSpaces::add(TriangleMesh& surface, const std::string& file) {
@@ -45,12 +56,14 @@ void SurfaceSpaces::add(TriangleMesh& surface, const std::string& file) {
     return;
   }
   const std::string before = surface.space;
-  if (change_space(surface, first_space_))
-    converted_[before].push_back(file);
-  else if (before.empty())
-    without_space_.push_back(file);
-  else if (before != first_space_)
-    not_comparable_[before].push_back(file);
+  note(before, change_space(surface, first_space_), file);
+}
+
+void SurfaceSpaces::add(std::shared_ptr<const SizeSource>& sizes, const std::string& file) {
+  const std::string before = sizes->space().empty() ? of_others_ : sizes->space();
+  std::shared_ptr<const SizeSource> changed = change_space(sizes, before, first_space_);
+  note(before, changed != nullptr, file);
+  if (changed) sizes = std::move(changed);
 }
 
 std::vector<Diagnostic> SurfaceSpaces::findings() const {
@@ -58,7 +71,7 @@ std::vector<Diagnostic> SurfaceSpaces::findings() const {
   const auto add = [&](DiagnosticCode code, const Files& files, const std::string& what, std::string done) {
     findings.push_back({.code = code,
                         .file = first_file_,
-                        .what = (files.size() == 1 ? "surface " : "surfaces ") + what + ": " + list_of(files),
+                        .what = what_ + (files.size() == 1 ? " " : "s ") + what + ": " + list_of(files),
                         .count = files.size(),
                         .done = std::move(done)});
   };
@@ -70,7 +83,8 @@ std::vector<Diagnostic> SurfaceSpaces::findings() const {
     add(DiagnosticCode::space_converted, files, "in another space, " + space, "brought into " + first);
   for (const auto& [space, files] : not_comparable_)
     add(DiagnosticCode::space_unknown, files, "in another space, " + space,
-        taken(files) + ", since it cannot be compared with " + first);
+        taken(files) + ", since it cannot be compared with " + first +
+            (first_is_tet_mesh_ && first_space_.empty() ? mesh_space_hint : ""));
   // There is nothing to compare with an unknown space.
   if (!without_space_.empty() && !first_space_.empty()) {
     add(DiagnosticCode::surface_space_unknown, without_space_, "whose file names no space",

@@ -2,32 +2,43 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "tetwright/diagnostic.h"
+#include "tetwright/sizes.h"
 #include "tetwright/surface_mesh.h"
 
 namespace tetwright {
 
+/// Ends a message about a tet mesh whose space is unknown.
+inline constexpr const char* mesh_space_hint = "; --mesh-space LPS or RAS names it";
+
 /// Brings the surfaces of a call into the coordinate system of its first input, and reports which ones
-/// changed and of which ones the system is unknown. Use: begin_with() if there is a volume, add() for each
-/// surface.
+/// changed and of which ones the system is unknown. Use: begin_with() if the first input is a volume or a tet
+/// mesh, add() for each surface.
 class SurfaceSpaces {
  public:
   /// \param space that of surfaces whose files name none, see BodyOptions::surface_space; empty: unknown
-  explicit SurfaceSpaces(std::string space) : of_others_(std::move(space)) {}
+  /// \param what singular of what is added, for messages
+  explicit SurfaceSpaces(std::string space, std::string what = "surface")
+      : of_others_(std::move(space)), what_(std::move(what)) {}
 
-  /// Makes a volume the first input.
+  /// Makes a volume or a tet mesh the first input.
   /// \param space its system; empty: unknown
-  /// \param file name of the volume for messages
-  /// \throws UsageError if there is a space for surfaces whose files name none, and that of the volume is not
-  ///   anatomical or unknown, so that they cannot be compared
-  void begin_with(const std::string& space, const std::string& file);
+  /// \param file name of the input for messages
+  /// \throws UsageError if there is a space for surfaces whose files name none, and that of the first input
+  /// is
+  ///   not anatomical or unknown, so that they cannot be compared
+  void begin_with(const std::string& space, const std::string& file, bool tet_mesh = false);
   /// Brings a surface into the system of the first input, which it becomes if there is none. A surface whose
   /// system is unknown stays as it is.
   /// \param file name of the surface for messages
   void add(TriangleMesh& surface, const std::string& file);
+  /// Brings sizes into the system of the first input.
+  /// \pre begin_with() was called
+  void add(std::shared_ptr<const SizeSource>& sizes, const std::string& file);
 
   /// System of the surfaces that were added; empty: unknown.
   const std::string& space() const { return first_space_; }
@@ -36,7 +47,12 @@ class SurfaceSpaces {
  private:
   using Files = std::vector<std::string>;
 
-  std::string of_others_, first_space_, first_file_;
+  /// Notes what becomes of an input.
+  /// \param converted whether it was brought from `before` into the system of the first input
+  void note(const std::string& before, bool converted, const std::string& file);
+
+  std::string of_others_, what_, first_space_, first_file_;
+  bool first_is_tet_mesh_ = false;
   std::map<std::string, Files> converted_, not_comparable_;  ///< by the system of the surface
   Files without_space_;
 };

@@ -12,21 +12,19 @@
 #include "tetwright/error.h"
 #include "tetwright/io.h"
 #include "tetwright/resources.h"
+#include "tools/prepare/surface_spaces.h"
 #include "tools/prepare/value_rules.h"
 
 namespace tetwright {
 
 namespace {
 
-/// Space of the result's coordinates; empty: unknown.
-std::string space_of_mesh(const PrepareReport& report) {
-  return report.volume ? report.volume->space : report.space;
-}
-
 /// Brings a grid into the space of the mesh, and reports what was done.
 /// \param what "image" or "mask"
-void adapt_space(LabelGrid& grid, const std::string& file, const std::string& what, PrepareReport& report) {
-  const std::string of_mesh = space_of_mesh(report), before = grid.space;
+void adapt_space(LabelGrid& grid, const std::string& file, const std::string& what, PrepareRun& run) {
+  PrepareReport& report = run.report;
+  const bool of_tets = run.task != Task::prepare && run.task != Task::mesh;
+  const std::string of_mesh = report.space_of_result(), before = grid.space;
   if (before == of_mesh) return;
   const bool converted = change_space(grid, of_mesh);
   report.diagnostics.push_back(
@@ -36,7 +34,9 @@ void adapt_space(LabelGrid& grid, const std::string& file, const std::string& wh
        .count = 1,
        .done = converted ? "brought into that of the mesh, " + of_mesh
                          : "taken as it is, since it cannot be compared with that of the mesh, " +
-                               (of_mesh.empty() ? std::string("unknown") : of_mesh)});
+                               (!of_mesh.empty() ? of_mesh
+                                : of_tets        ? std::string("unknown") + mesh_space_hint
+                                                 : std::string("unknown"))});
 }
 
 double bytes_of(const ImageVolume& image) {
@@ -171,7 +171,7 @@ void check_images_meet(const ValueInputs& inputs, const Box3& box, const std::ve
   for (std::size_t i = 0; i < inputs.images.size(); ++i) {
     const std::string& file = options.images[i].file;
     LabelGrid grid = *inputs.images[i];
-    (void)change_space(grid, space_of_mesh(run.report));
+    (void)change_space(grid, run.report.space_of_result());
     check_image_meets(grid, box.low, box.high, file, run.report.inputs.front());
     ImageMask mask;
     if (options.own_label || inputs.mask) require_mask_memory(grid, file);
@@ -179,10 +179,10 @@ void check_images_meet(const ValueInputs& inputs, const Box3& box, const std::ve
       mask = ImageMask::own_label(grid, *run.value_labels);
     } else if (inputs.mask) {
       LabelVolume adapted;
-      const bool same = inputs.mask->space == space_of_mesh(run.report);
+      const bool same = inputs.mask->space == run.report.space_of_result();
       if (!same) {
         adapted = *inputs.mask;
-        (void)change_space(adapted, space_of_mesh(run.report));
+        (void)change_space(adapted, run.report.space_of_result());
       }
       mask = ImageMask::nonzero(grid, same ? *inputs.mask : adapted);
     }
@@ -240,9 +240,9 @@ void take_values(ValueInputs inputs, Prepared& result, PrepareRun& run) {
   if (run.task == Task::values) check_field_names(mesh, run);
   result.bins.resize(options.bins.size());
   std::shared_ptr<const LabelVolume> mask = options.own_label ? run.value_labels : inputs.mask;
-  if (mask && !options.own_label && mask->space != space_of_mesh(report)) {
+  if (mask && !options.own_label && mask->space != report.space_of_result()) {
     auto adapted = std::make_shared<LabelVolume>(*mask);
-    adapt_space(*adapted, options.mask_file, "mask", report);
+    adapt_space(*adapted, options.mask_file, "mask", run);
     mask = adapted;
   }
   const std::string counting = options.own_label ? " of their material" : mask ? " of the mask" : "";
@@ -250,11 +250,11 @@ void take_values(ValueInputs inputs, Prepared& result, PrepareRun& run) {
     const ValueImage& from = options.images[i];
     run.progress.begin_stage("values");
     std::shared_ptr<const ImageVolume> image = std::move(inputs.images[i]);
-    if (image->space != space_of_mesh(report)) {
+    if (image->space != report.space_of_result()) {
       // Only the grid changes, but it belongs to the caller.
       auto adapted = image.use_count() == 1 ? std::const_pointer_cast<ImageVolume>(image)
                                             : std::make_shared<ImageVolume>(*image);
-      adapt_space(*adapted, from.file, "image", report);
+      adapt_space(*adapted, from.file, "image", run);
       image = adapted;
     }
     if (mask) require_mask_memory(*image, from.file);

@@ -201,6 +201,7 @@ void bind_mesh(py::module_& module) {
                                  names[py::int_(tag)] = to_text(name);
                                return names;
                              })
+      .def_property_readonly("space", [](const Mesh& m) { return to_text(m.mesh.space); })
       .def_property_readonly("interface_triangles",
                              [](const py::object& self) {
                                const auto& faces = self.cast<const Mesh&>().mesh.interfaces;

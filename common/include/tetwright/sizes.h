@@ -46,7 +46,9 @@ struct WantedLength {
 class SizeSource {
  public:
   /// \param field name of the lengths in the file; empty if they have none
-  explicit SizeSource(std::string field = {}) : field_(std::move(field)) {}
+  /// \param space coordinate system of the source, see TetMesh::space; empty if unknown
+  explicit SizeSource(std::string field = {}, std::string space = {})
+      : field_(std::move(field)), space_(std::move(space)) {}
   SizeSource(const SizeSource&) = delete;
   SizeSource& operator=(const SizeSource&) = delete;
   virtual ~SizeSource() = default;
@@ -56,6 +58,7 @@ class SizeSource {
   virtual bool fills_space() const { return true; }
 
   const std::string& field() const { return field_; }
+  const std::string& space() const { return space_; }
 
   /// Target edge length at a point. Sources that fill space (tet meshes, grids) answer within their domain,
   /// with distance 0, and return std::nullopt elsewhere. Sources on a surface answer everywhere, with the
@@ -67,8 +70,14 @@ class SizeSource {
   virtual void for_each_value(const std::function<void(const Vec3& place, double length)>& f) const = 0;
 
  private:
-  const std::string field_;
+  const std::string field_, space_;
 };
+
+/// The lengths of a source in another coordinate system.
+/// \param from system of the source, also if SizeSource::space() is empty
+/// \return null if nothing would change: the systems are equal, or one of them is unknown
+std::shared_ptr<const SizeSource> change_space(std::shared_ptr<const SizeSource> sizes,
+                                               const std::string& from, const std::string& to);
 
 /// Default growth of the target edge length over distance: adjacent edges then differ by about this fraction,
 /// which allows well-shaped tets between them.

@@ -106,6 +106,10 @@ struct TetMesh {
   /// second side; corner k + 3 has the coordinates of corner k. Only meshes to be written, or just read, have
   /// any.
   std::vector<Wedge> wedges = {};
+  /// Coordinate system of the points: "left-posterior-superior", "right-anterior-superior" or another one
+  /// that the volume or surface names from which the mesh was made; empty: unknown. Files of VTK's formats
+  /// record the first two. It is never converted: surfaces, images and sizes are, see change_space().
+  std::string space = {};
 };
 
 /// Edges of a tet in the order of its midside nodes in VTK, Abaqus, Nastran and FEBio. Gmsh swaps the last

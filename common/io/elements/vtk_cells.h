@@ -26,6 +26,9 @@ inline constexpr bool is_vtk_triangle(std::int64_t type) {
 inline constexpr const char* vtk_surface_field = "surface";
 inline constexpr const char* vtk_surface_names = "surface_names";
 inline constexpr const char* vtk_material_names = "material_names";
+/// Name of the field data with the coordinate system, "LPS" or "RAS": a text in files of 3D Slicer, the bytes
+/// of the text in those of this program, since other readers do not support VTK's text arrays.
+inline constexpr const char* vtk_space = "SPACE";
 
 /// Converts an array of bytes to text; ? for a number that is no byte.
 std::string vtk_text(const std::vector<double>& bytes);

@@ -232,6 +232,7 @@ std::vector<TetFace> faces_of_tets(const TetMesh& mesh) {
 
 TriangleMesh interface_surface(const TetMesh& mesh, const NameRules& rules) {
   TriangleMesh surface;
+  surface.space = mesh.space;
   std::vector<Index> new_index(mesh.points.size(), no_index);
   for (const InterfaceTriangle& t : mesh.interfaces)
     for (const Index v : t.ids) new_index[v] = 0;

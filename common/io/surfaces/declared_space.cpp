@@ -19,6 +19,12 @@ std::string space_called(std::string_view name) {
   return {};
 }
 
+std::string short_name_of_space(std::string_view space) {
+  for (const char* name : {"LPS", "RAS"})
+    if (space_called(name) == space) return name;
+  return {};
+}
+
 std::string declared_space(std::string_view header) {
   constexpr std::string_view tag = "SPACE=";
   for (std::size_t at = header.find(tag); at != std::string_view::npos; at = header.find(tag, at + 1)) {

@@ -16,5 +16,7 @@ std::string space_in_comments(std::string_view bytes, char comment);
 
 /// The system that is called "LPS" or "RAS", in the form of TriangleMesh::space; empty for other names.
 std::string space_called(std::string_view name);
+/// The inverse of space_called(); empty for other spaces.
+std::string short_name_of_space(std::string_view space);
 
 }  // namespace tetwright

@@ -179,6 +179,8 @@ TriangleMesh read_obj(std::string_view bytes, const std::string& name, std::vect
 
 std::string write_obj(const TriangleMesh& mesh) {
   std::string out;
+  if (const std::string space = short_name_of_space(mesh.space); !space.empty())
+    out += "# SPACE=" + space + '\n';
   for (const Vec3& p : mesh.points) {
     out += "v ";
     append_point(out, p);

@@ -423,6 +423,8 @@ SurfaceWithFields read_ply_with_fields(std::string_view bytes, const std::string
 std::string write_ply(const TriangleMesh& mesh) {
   const bool grouped = !mesh.groups.empty();
   std::string out = "ply\nformat binary_little_endian 1.0\n";
+  if (const std::string space = short_name_of_space(mesh.space); !space.empty())
+    out += "comment SPACE=" + space + '\n';
   const std::vector<std::int32_t> labels = labels_of(mesh.groups);
   for (std::size_t g = 0; g < mesh.groups.size(); ++g)
     out += "comment " + std::string(group_comment) + std::to_string(labels[g]) + ": " +

@@ -12,6 +12,7 @@
 #include "common/io/names/mesh_fields.h"
 #include "common/io/surfaces/declared_space.h"
 #include "common/io/surfaces/surface_builder.h"
+#include "common/io/surfaces/vtu_space.h"
 
 namespace tetwright {
 
@@ -71,17 +72,6 @@ void read_names(const VtuData& data, pugi::xml_node piece, std::vector<SurfaceRe
       if (group.number == number) group.name = name;
 }
 
-/// Reads the array SPACE of the whole dataset, by which 3D Slicer names the coordinate system.
-std::string read_space(const VtuData& data, pugi::xml_node piece) {
-  const pugi::xml_node fields = piece.parent().child("FieldData");
-  std::string space;
-  for (const pugi::xml_node node : fields.children())
-    if (holds_texts(node) && std::string_view(node.attribute("Name").as_string()) == "SPACE" &&
-        node.attribute("NumberOfTuples").as_int() == 1)
-      data.texts(node, 1, [&](std::string_view name) { space = space_called(name); });
-  return space;
-}
-
 /// \param point_fields receives the fields; may be null
 TriangleMesh read_poly_data(std::string_view bytes, const std::string& name, std::vector<Dropped>* dropped,
                             std::vector<MeshField>* point_fields) {
@@ -132,7 +122,7 @@ TriangleMesh read_poly_data(std::string_view bytes, const std::string& name, std
       std::string_view(label_array.attribute("Name").as_string()) == vtk_surface_field)
     read_names(data, piece, named, bytes.size());
   TriangleMesh mesh = surface.finish(dropped, named);
-  mesh.space = read_space(data, piece);
+  mesh.space = read_vtu_space(data, piece.parent());
   if (dropped) {
     note_arrays(piece.child("PointData"), "fields of points", {}, *dropped);
     note_arrays(piece.child("CellData"), "fields of cells", label_array, *dropped);
@@ -156,12 +146,13 @@ void write_vtp(const TriangleMesh& mesh, const ByteSink& sink) {
   const std::size_t triangles = mesh.triangles.size();
   sink(vtu_head("PolyData"));
   const std::vector<std::int32_t> labels = labels_of(mesh.groups);
-  if (!mesh.groups.empty()) {
+  if (!mesh.groups.empty() || !short_name_of_space(mesh.space).empty()) {
     std::vector<std::pair<std::int64_t, std::string>> names;
     for (std::size_t g = 0; g < mesh.groups.size(); ++g)
       names.emplace_back(labels[g], group_text(mesh.groups[g]));
     sink("<FieldData>\n");
-    write_vtu_names(sink, vtk_surface_names, names);
+    if (!names.empty()) write_vtu_names(sink, vtk_surface_names, names);
+    write_vtu_space(sink, mesh.space);
     sink("</FieldData>\n");
   }
   sink("<Piece NumberOfPoints=\"" + std::to_string(mesh.points.size()) + "\" NumberOfPolys=\"" +

@@ -16,6 +16,7 @@
 #include "common/io/elements/vtk_pieces.h"
 #include "common/io/encodings/vtu_data.h"
 #include "common/io/names/mesh_fields.h"
+#include "common/io/surfaces/vtu_space.h"
 #include "common/io/tets/piece_joining.h"
 #include "common/io/tets/vtu.h"
 #include "common/io/text/text_scanner.h"
@@ -107,6 +108,7 @@ class NumberedPieces {
     ReadTetMesh result;
     JoinedPieces joined = join_pieces(std::move(pieces_), whole_, path_);
     result.mesh = std::move(joined.mesh);
+    result.mesh.space = space_;
     MidsideNodesRead midside;
     for (std::size_t t = 0; t < joined.midside.size(); t += 6)
       midside.add_tet(std::span<const Index>(joined.midside).subspan(t, 6));
@@ -256,7 +258,8 @@ class NumberedPieces {
         for (const std::int64_t c : data.integers(node, file_size)) out += static_cast<char>(c);
       return out;
     };
-    const std::string materials = text(vtk_material_names), groups = text(vtk_face_group_names);
+    const std::string materials = text(vtk_material_names), groups = text(vtk_face_group_names),
+                      space = read_vtu_space(data, grid);
     std::optional<WholeCounts> whole;
     if (const pugi::xml_node node = array(vtk_whole_mesh)) {
       const std::vector<std::int64_t> counts = data.integers(node, 3);
@@ -270,14 +273,17 @@ class NumberedPieces {
     for (const pugi::xml_node node : grid.child("FieldData").children("DataArray")) {
       const std::string name = field_name(node.attribute("Name").as_string());
       if (name != vtk_material_names && name != vtk_face_group_names && name != vtk_whole_mesh &&
+          space_of_vtu_array(data, node).empty() &&
           std::find(dataset_arrays_.begin(), dataset_arrays_.end(), name) == dataset_arrays_.end())
         dataset_arrays_.push_back(name);
     }
     if (!std::exchange(described_, true)) {
       material_names_ = materials;
       face_group_names_ = groups;
+      space_ = space;
       whole_ = whole;
-    } else if (materials != material_names_ || groups != face_group_names_ || whole != whole_) {
+    } else if (materials != material_names_ || groups != face_group_names_ || space != space_ ||
+               whole != whole_) {
       throw InputError(path_ + ": piece " + std::to_string(number) + " (" + files_[number] +
                        ") is of another mesh than " + pieces_.front().file + "; write the set again");
     }
@@ -289,8 +295,8 @@ class NumberedPieces {
   std::vector<ReadPiece> pieces_;
   double held_ = 0;                                 ///< memory of these, bytes
   std::map<std::int64_t, std::size_t> first_tets_;  ///< smallest own tet of each piece that has one
-  bool described_ = false;                          ///< the next three are those of a piece
-  std::string material_names_, face_group_names_;
+  bool described_ = false;                          ///< the next four are those of a piece
+  std::string material_names_, face_group_names_, space_;
   std::optional<WholeCounts> whole_;
   std::vector<std::string> dataset_arrays_;
   KindCounts rounded_;

@@ -8,6 +8,7 @@
 #include "common/io/elements/vtk_pieces.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/names/mesh_parts.h"
+#include "common/io/surfaces/vtu_space.h"
 #include "common/io/tets/pvtu.h"
 #include "common/io/tets/vtu.h"
 #include "common/io/tets/vtu_fields.h"
@@ -39,6 +40,7 @@ void write_field_data(const DividedMesh& whole, const ByteSink& sink) {
   for (const MeshParts::Surface& s : names_of_parts(whole.names, printable_names()).surfaces)
     names.emplace_back(s.number, s.name);
   if (!names.empty()) write_vtu_names(sink, vtk_face_group_names, names);
+  write_vtu_space(sink, whole.names.space);
   const std::array<std::int64_t, 3> sizes{whole.parts, static_cast<std::int64_t>(whole.tets),
                                           static_cast<std::int64_t>(whole.nodes)};
   write_vtu_numbers(sink, "Int64", vtk_whole_mesh, "NumberOfTuples=\"3\" ", sizes.size(),

@@ -9,6 +9,7 @@
 #include "common/io/encodings/vtk_numbers.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/names/mesh_parts.h"
+#include "common/io/surfaces/declared_space.h"
 #include "common/io/tets/vtk_sections.h"
 #include "common/io/text/text_scanner.h"
 #include "common/lower_case.h"
@@ -33,6 +34,7 @@ class VtkReader final : private VtkSections {
       in_.fail("there are no tets (type 10 or 24) among its " + std::to_string(types_.size()) +
                " cells; a tet mesh is needed");
     result_.mesh.points = std::move(points_);
+    result_.mesh.space = declared_space(title_);
     midside_.remove_from(result_, triangles_.triangles);
     take_material(result_, options_, in_.name());
     take_triangles(triangles_, "surface", in_.name(), result_);

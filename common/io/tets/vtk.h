@@ -37,7 +37,8 @@ std::optional<SurfaceWithFields> read_vtk_surface_with_fields(std::string_view b
 /// Writes a legacy VTK file, version 3.0, ASCII, which the simplest readers support. The mesh's interfaces,
 /// if any, are triangles after the tets. The cell field "material" holds the tags of both (for a triangle the
 /// tag on its inner side), "surface" the group numbers of the triangles, 0 for tets. Names of materials and
-/// surfaces are field data of the dataset, as the bytes of lines "NUMBER<tab>NAME". Point fields at midside
+/// surfaces are field data of the dataset, as the bytes of lines "NUMBER<tab>NAME". The title names the
+/// coordinate system as 3D Slicer does (SPACE=LPS). Point fields at midside
 /// nodes are means of both endpoints; cell fields on triangles are NaN, or 0 if integer.
 void write_vtk(const MeshToWrite& written, const ByteSink& sink);
 

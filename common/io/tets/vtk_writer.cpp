@@ -7,6 +7,7 @@
 #include "common/io/elements/vtk_cells.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/names/mesh_parts.h"
+#include "common/io/surfaces/declared_space.h"
 #include "common/io/tets/vtk.h"
 #include "common/io/text/text_writer.h"
 
@@ -78,7 +79,9 @@ void write_vtk(const MeshToWrite& written, const ByteSink& sink) {
   const std::size_t tets = mesh.tets.size(), triangles = mesh.interfaces.size(),
                     cells = tets + triangles + mesh.wedges.size();
   TextWriter out(sink);
-  out << "# vtk DataFile Version 3.0\nwritten by tetwright\nASCII\nDATASET UNSTRUCTURED_GRID\n";
+  out << "# vtk DataFile Version 3.0\nwritten by tetwright";
+  if (const std::string space = short_name_of_space(mesh.space); !space.empty()) out << " SPACE=" << space;
+  out << "\nASCII\nDATASET UNSTRUCTURED_GRID\n";
   out << "POINTS " << written.nodes() << " double\n";
   for (std::size_t i = 0; i < written.nodes(); ++i) {
     const Vec3& p = written.node(i);

@@ -11,6 +11,7 @@
 #include "common/io/encodings/hdf5_file.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/names/mesh_parts.h"
+#include "common/io/surfaces/declared_space.h"
 #include "common/io/tets/vtu.h"
 #include "common/mesh/boundary_groups.h"
 #include "common/utf8.h"
@@ -152,6 +153,8 @@ void VtkHdfWriter::write(Hdf5Writer& file) const {
   for (const MeshParts::Surface& s : names_of_parts(whole_.names, printable_names()).surfaces)
     names.emplace_back(s.number, s.name);
   if (!names.empty()) add_list(file, field_data + "/" + vtk_face_group_names, bytes_of_names(names));
+  if (const std::string space = short_name_of_space(whole_.names.space); !space.empty())
+    add_list(file, field_data + "/" + vtk_space, std::vector<std::uint8_t>(space.begin(), space.end()));
   add_list(file, field_data + "/" + vtk_whole_mesh,
            std::vector<std::int64_t>{whole_.parts, static_cast<std::int64_t>(whole_.tets),
                                      static_cast<std::int64_t>(whole_.nodes)});

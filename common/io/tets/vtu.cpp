@@ -16,6 +16,7 @@
 #include "common/io/encodings/vtu_data.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/names/mesh_parts.h"
+#include "common/io/surfaces/vtu_space.h"
 #include "common/io/text/text_scanner.h"
 #include "common/parallel/touched_memory.h"
 #include "tetwright/error.h"
@@ -38,6 +39,8 @@ class VtuReader {
     grid_ = pieces[0].parent();
     for (const pugi::xml_node piece : pieces) read_piece(piece);
     read_names(grid_);
+    if (std::string space = read_vtu_space(*data_, grid_); !space.empty())
+      result_.mesh.space = std::move(space);
     note_dropped_arrays(grid_, pieces);
   }
 
@@ -345,7 +348,8 @@ class VtuReader {
     parents.insert(parents.end(), pieces.begin(), pieces.end());
     for (const pugi::xml_node parent : parents)
       for (const pugi::xml_node node : parent.child("FieldData").children())
-        if (is_array(node) && !(parent == grid && is_of_names(name_of(node))))
+        if (is_array(node) &&
+            !(parent == grid && (is_of_names(name_of(node)) || !space_of_vtu_array(*data_, node).empty())))
           of_dataset.push_back(name_of(node));
     for (const char* part : {"PointData", "CellData"})
       for (const pugi::xml_node node : pieces[0].child(part).children())

@@ -10,6 +10,8 @@
 #include "common/io/encodings/vtu_arrays.h"
 #include "common/io/names/mesh_fields.h"
 #include "common/io/names/mesh_parts.h"
+#include "common/io/surfaces/declared_space.h"
+#include "common/io/surfaces/vtu_space.h"
 #include "common/io/tets/vtu.h"
 #include "common/io/tets/vtu_fields.h"
 #include "common/mesh/boundary_groups.h"
@@ -99,7 +101,8 @@ void write_vtu(const MeshToWrite& written, const ByteSink& sink) {
     wedges.insert(wedges.end(), part.wedges.begin(), part.wedges.end());
     of_wedges.insert(of_wedges.end(), part.wedges.size(), static_cast<std::int32_t>(part.number));
   }
-  if (!mesh.material_names.empty() || !sheets.faces.empty() || !cohesive.empty()) {
+  if (!mesh.material_names.empty() || !sheets.faces.empty() || !cohesive.empty() ||
+      !short_name_of_space(mesh.space).empty()) {
     const MeshParts parts = vtu_parts(mesh);
     std::vector<std::pair<std::int64_t, std::string>> names;
     sink("<FieldData>\n");
@@ -109,6 +112,7 @@ void write_vtu(const MeshToWrite& written, const ByteSink& sink) {
     names.clear();
     for (const MeshParts::Surface& s : parts.surfaces) names.emplace_back(s.number, s.name);
     if (!names.empty()) write_vtu_names(sink, vtk_surface_names, names);
+    write_vtu_space(sink, mesh.space);
     sink("</FieldData>\n");
   }
   const std::size_t tets = mesh.tets.size(), faces = sheets.faces.size(),

@@ -202,9 +202,167 @@ TEST_F(SurfaceSpacesOfCalls, ImagesAreBroughtIntoThatOfAVolume) {
     EXPECT_NEAR(mesh.point_fields[0].values[p], mesh.points[p].x() + 20 * mesh.points[p].y(), 1e-3);
 }
 
+/// A mesh of a block, made from a NIfTI file in RAS, and what is compared with it.
+class SpacesBesideAMesh : public SurfaceSpacesOfCalls {
+ protected:
+  SpacesBesideAMesh() {
+    const std::string labels = write("head.nii", nifti(in_block));
+    for (const char* extension : {".vtu", ".msh"}) {
+      const Answer a = run("mesh " + labels + " -o " + (folder_ / "m") + extension);
+      EXPECT_EQ(a.status, 0) << a.err;
+    }
+    write("lps.stl", with_header(box({-13.5, -13.5, 1.5}, {-1.5, -1.5, 13.5}), ".stl", "LPS"));
+    write("lps.ply", with_header(box({-13.5, -13.5, 1.5}, {-1.5, -1.5, 13.5}), ".ply", ""));
+  }
+  std::string path(const std::string& file) const { return folder_ / file; }
+  /// Largest distance of the surfaces from the mesh in the JSON of check.
+  static double distance(const Answer& a) {
+    return nlohmann::json::parse(a.out).at("surface").at("from_surface").at("upper");
+  }
+};
+
+const char* const converted = "(brought into that of the first input, right-anterior-superior)";
+
+TEST_F(SpacesBesideAMesh, FilesOfTheMeshNameIt) {
+  EXPECT_EQ(read_tet_mesh(path("m.vtu")).mesh.space, "right-anterior-superior");
+  EXPECT_EQ(read_tet_mesh(path("m.msh")).mesh.space, "");
+  // Other commands keep it, and --mesh-space names it.
+  ASSERT_EQ(run("improve " + path("m.vtu") + " -o " + path("i.vtk")).status, 0);
+  EXPECT_EQ(read_tet_mesh(path("i.vtk")).mesh.space, "right-anterior-superior");
+  ASSERT_EQ(run("simplify " + path("m.msh") + " --mesh-space RAS --target-tets 2000 -o " + path("s.vtu") +
+                " --boundary " + path("s.ply"))
+                .status,
+            0);
+  EXPECT_EQ(read_tet_mesh(path("s.vtu")).mesh.space, "right-anterior-superior");
+  EXPECT_EQ(read_surface(path("s.ply")).space, "right-anterior-superior");
+  // The file counts more than the option.
+  ASSERT_EQ(run("values " + path("m.vtu") + " ct=" + write_image() + " --mesh-space LPS -o " + path("v.vtu"))
+                .status,
+            0);
+  EXPECT_EQ(read_tet_mesh(path("v.vtu")).mesh.space, "right-anterior-superior");
+}
+
+TEST_F(SpacesBesideAMesh, SurfacesOfCheckAreBroughtIntoIt) {
+  for (const std::string& words :
+       {"m.vtu --surface " + path("lps.stl"), "m.msh --mesh-space RAS --surface " + path("lps.stl"),
+        "m.vtu --surface-space LPS --surface " + path("lps.ply")}) {
+    const Answer a = run("check --json " + path(words));
+    EXPECT_EQ(a.status, 0) << a.err;
+    EXPECT_NE(a.err.find(converted), std::string::npos) << words << a.err;
+    EXPECT_LT(distance(a), 1) << words;
+  }
+}
+
+TEST_F(SpacesBesideAMesh, SurfacesElsewhereAreRefusedWithBothBoxes) {
+  const std::string boxes = "lps.ply: it does not meet " + path("m.vtu") +
+                            ": it reaches from (-13.5, -13.5, 1.5) to (-1.5, -1.5, 13.5), " + path("m.vtu") +
+                            " from (1.";
+  for (const std::string& words : {"check " + path("m.vtu") + " --surface " + path("lps.ply"),
+                                   "embed " + path("m.vtu") + " " + path("lps.ply") + " -o " + path("w.npz")})
+    expect_refused(words, 3, {boxes});
+  expect_refused("check " + path("m.msh") + " --surface " + path("lps.stl"), 3, {"it does not meet"});
+  // A surface elsewhere beside one that meets the mesh.
+  const std::string meets = write("ras.stl", with_header(box({2, 2, 2}, {13, 13, 13}), ".stl", "RAS"));
+  expect_refused("check " + path("m.vtu") + " --surface " + meets + " " + path("lps.ply"), 3,
+                 {"it does not meet"});
+}
+
+TEST_F(SpacesBesideAMesh, WhatIsUnknownIsSaid) {
+  const std::string plain = write("plain.ply", with_header(box({2, 2, 2}, {13, 13, 13}), ".ply", ""));
+  const Answer surface = run("check " + path("m.vtu") + " --surface " + plain);
+  EXPECT_EQ(surface.status, 0);
+  EXPECT_NE(surface.err.find("1 surface whose file names no space: '" + plain + "' (taken as it is"),
+            std::string::npos)
+      << surface.err;
+  const std::string named = write("named.ply", with_header(box({2, 2, 2}, {13, 13, 13}), ".ply", "LPS"));
+  const Answer mesh = run("check " + path("m.msh") + " --surface " + named);
+  EXPECT_NE(mesh.err.find("unknown; --mesh-space LPS or RAS names it)"), std::string::npos) << mesh.err;
+  EXPECT_EQ(run("check " + path("m.msh") + " --surface " + plain).err.find("space"), std::string::npos);
+}
+
+TEST_F(SpacesBesideAMesh, EmbeddedSurfacesAreBroughtIntoIt) {
+  for (const std::string& words :
+       {path("m.vtu") + " " + path("lps.stl"), path("m.msh") + " " + path("lps.stl") + " --mesh-space RAS",
+        path("m.vtu") + " " + path("lps.ply") + " --surface-space LPS"}) {
+    const Answer a = run("embed " + words + " -o " + path("w.json"));
+    EXPECT_EQ(a.status, 0) << a.err;
+    EXPECT_NE(a.err.find(converted), std::string::npos) << a.err;
+    const nlohmann::json weights = nlohmann::json::parse(contents(path("w.json")));
+    for (const double distance : weights.at("distances")) EXPECT_LT(distance, 1);
+  }
+}
+
+TEST_F(SpacesBesideAMesh, ImagesAreBroughtIntoIt) {
+  const std::string image = write_image();
+  for (const std::string& words : {"values " + path("m.vtu") + " ct=" + image,
+                                   "values " + path("m.msh") + " --mesh-space RAS ct=" + image,
+                                   "improve " + path("m.vtu") + " --values ct=" + image}) {
+    const Answer a = run(words + " -o " + (folder_ / "out.vtu"));
+    EXPECT_EQ(a.status, 0) << a.err;
+    EXPECT_NE(a.err.find("(brought into that of the mesh, right-anterior-superior)"), std::string::npos)
+        << a.err;
+    const TetMesh mesh = result();
+    ASSERT_EQ(mesh.point_fields.size(), 1u);
+    for (std::size_t p = 0; p < mesh.points.size(); ++p)
+      EXPECT_NEAR(mesh.point_fields[0].values[p], mesh.points[p].x() + 20 * mesh.points[p].y(), 1e-3);
+  }
+  expect_refused("values " + path("m.msh") + " ct=" + image + " -o " + path("no.vtu"), 3,
+                 {"no part of the image is in", "the image reaches from (-15.5, -15.5, -0.5)"});
+}
+
+/// A tet mesh in LPS around the block, with large tets on one side, x above -8, and small ones on the other.
+std::string sizes_in_lps(const std::string& header) {
+  std::string text =
+      "# vtk DataFile Version 3.0\nsizes" + header + "\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 8 double\n";
+  for (int corner = 0; corner < 8; ++corner)
+    text += std::string(corner & 1 ? "0 " : "-16 ") + (corner & 2 ? "0 " : "-16 ") +
+            (corner & 4 ? "16\n" : "0\n");
+  text += "CELLS 6 30\n4 0 1 3 7\n4 0 3 2 7\n4 0 2 6 7\n4 0 6 4 7\n4 0 4 5 7\n4 0 5 1 7\nCELL_TYPES 6\n";
+  for (int tet = 0; tet < 6; ++tet) text += "10\n";
+  text += "POINT_DATA 8\nSCALARS size double 1\nLOOKUP_TABLE default\n";
+  for (int corner = 0; corner < 8; ++corner) text += corner & 1 ? "9\n" : "1.5\n";
+  return text;
+}
+
+TEST_F(SpacesBesideAMesh, SizesAreBroughtIntoIt) {
+  const std::string named = write("named.vtk", sizes_in_lps(" SPACE=LPS")),
+                    plain = write("plain.vtk", sizes_in_lps(""));
+  const std::string out = " --quiet -o " + (folder_ / "out.vtu"), labels = path("head.nii");
+  for (const std::string& words : {"simplify " + path("m.vtu") + " --size-field " + named,
+                                   "simplify " + path("m.msh") + " --mesh-space RAS --size-field " + named,
+                                   "simplify " + path("m.vtu") + " --surface-space LPS --size-field " + plain,
+                                   "prepare " + labels + " --size-field " + named,
+                                   "prepare " + labels + " --surface-space LPS --size-field " + plain}) {
+    const Answer a = run(words + out + " --stats " + path("s.json"));
+    EXPECT_LE(a.status, 1) << a.err;
+    EXPECT_NE(contents(path("s.json")).find("1 size field in another space, left-posterior-superior"),
+              std::string::npos)
+        << words;
+    // In RAS the small tets are at large x.
+    const TetMesh mesh = result();
+    std::size_t small = 0;
+    for (const Vec3& p : mesh.points) small += p.x() > 8;
+    EXPECT_GT(small, 2 * (mesh.points.size() - small)) << words;
+  }
+  expect_refused("simplify " + path("m.vtu") + " --size-field " + plain + out, 3,
+                 {"plain.vtk: it has no sizes in ", "it reaches from (-16, -16, 0) to (0, 0, 16), "});
+  // Their boxes share a layer of voxels.
+  expect_refused("prepare " + labels + " --size-field " + plain + out, 3,
+                 {"plain.vtk: the sizes end within the body"});
+}
+
 TEST_F(SurfaceSpacesOfCalls, WrongOptionsAreRefused) {
   const std::string labels = write("head.nii", nifti(in_block));
   const std::string out = " -o " + (folder_ / "no.vtu");
+  ASSERT_EQ(run("mesh " + labels + " -o " + (folder_ / "m.msh")).status, 0);
+  const std::string mesh = folder_ / "m.msh";
+  const std::string surface = write("lps.stl", with_header(box(low, high), ".stl", "LPS"));
+  expect_refused("check " + mesh + " --surface-space LPS", 2, {"--surface-space", "give --surface FILE"});
+  expect_refused("check " + mesh + " --surface-space LPS --surface " + surface, 2,
+                 {"m.msh, is unknown", "name it by --mesh-space LPS or RAS"});
+  expect_refused("simplify " + mesh + " --target-tets 100 --surface-space LPS" + out, 2,
+                 {"--surface-space", "give --size-field FILE"});
+  expect_refused("check " + mesh + " --mesh-space LAS", 2, {"--mesh-space", "'LAS' is not LPS or RAS"});
   expect_refused("mesh " + labels + " --surface-space LPS" + out, 2, {"--surface-space is for surfaces"});
   expect_refused("mesh " + labels + " --surface-space LAS" + out, 2,
                  {"--surface-space", "'LAS' is not LPS or RAS"});

@@ -90,6 +90,43 @@ TEST(SurfaceSpaces, WithoutAnyHeaderNothingIsSaid) {
       "it cannot be compared with that of the first input, unknown)\n");
 }
 
+TEST(SurfaceSpaces, OfSizesAreThatOfTheMesh) {
+  const auto sizes_in = [](const std::string& space) -> std::shared_ptr<const SizeSource> {
+    return surface_sizes(triangle(space), {1, 2, 3});
+  };
+  for (const std::string given : {"", lps}) {
+    SurfaceSpaces spaces(given, "size field");
+    spaces.begin_with(ras, "m.vtu", true);
+    std::shared_ptr<const SizeSource> known = sizes_in(lps), unknown = sizes_in("");
+    spaces.add(known, "sizes.vtk");
+    spaces.add(unknown, "sizes.ply");
+    EXPECT_EQ(known->at({-1, -2, 3})->distance, 0);
+    EXPECT_EQ(unknown->at({-1, -2, 3})->distance == 0, !given.empty());
+    EXPECT_EQ(
+        texts(spaces),
+        given.empty()
+            ? "m.vtu: 1 size field in another space, left-posterior-superior: 'sizes.vtk' (brought into "
+              "that of the first input, right-anterior-superior)\n"
+              "m.vtu: 1 size field whose file names no space: 'sizes.ply' (taken as it is, in that of "
+              "the first input, right-anterior-superior)\n"
+            : "m.vtu: 2 size fields in another space, left-posterior-superior: 'sizes.vtk', 'sizes.ply' "
+              "(brought into that of the first input, right-anterior-superior)\n");
+  }
+}
+
+TEST(SurfaceSpaces, AMeshWithoutOneIsNamedByAnOption) {
+  SurfaceSpaces spaces("");
+  spaces.begin_with("", "m.msh", true);
+  TriangleMesh lead = triangle(lps);
+  spaces.add(lead, "lead.stl");
+  EXPECT_EQ(lead.points[0], Vec3(1, 2, 3));
+  EXPECT_NE(texts(spaces).find("unknown; --mesh-space LPS or RAS names it)"), std::string::npos)
+      << texts(spaces);
+  SurfaceSpaces given(lps);
+  const std::string message = error_of<UsageError>([&] { given.begin_with("", "m.msh", true); });
+  EXPECT_NE(message.find("name it by --mesh-space"), std::string::npos) << message;
+}
+
 TEST(SurfaceSpaces, AnOptionForAVolumeWithoutASpaceIsRefused) {
   for (const char* space : {"", "scanner-xyz"}) {
     SurfaceSpaces spaces(lps);

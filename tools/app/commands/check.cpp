@@ -15,6 +15,7 @@
 #include "tools/app/commands/commands.h"
 #include "tools/app/commands/output_paths.h"
 #include "tools/app/commands/report_file.h"
+#include "tools/app/commands/surfaces_of_mesh.h"
 #include "tools/app/printed_report.h"
 #include "tools/report/stats_json.h"
 
@@ -56,23 +57,28 @@ CheckReport examine(TetMesh& mesh, CommandRun& run) {
   return check;
 }
 
-/// Reads the surfaces of --surface, with their names.
-void read_surfaces(CommandRun& run, std::vector<TriangleMesh>& surfaces, std::vector<std::string>& names) {
+/// Reads the surfaces of --surface, with their names, into the space of the mesh.
+/// \throws InputError if a surface does not meet the mesh
+void read_surfaces(const TetMesh& mesh, CommandRun& run, std::vector<TriangleMesh>& surfaces,
+                   std::vector<std::string>& names) {
+  SpacesOfSurfaces spaces(mesh, run);
+  const auto add = [&](TriangleMesh surface, const std::string& file) {
+    spaces.add(surface, file);
+    surfaces.push_back(std::move(surface));
+    names.push_back(file);
+  };
   for (const std::string& file : run.line.check.surfaces) {
     Input input = input_named(file, run.line, run.in_memory);
     if (input.is_vdb_file()) {
-      for (NamedSurface& s : read_level_sets(file)) {
-        surfaces.push_back(std::move(s.surface));
-        names.push_back(file);
-      }
+      for (NamedSurface& s : read_level_sets(file)) add(std::move(s.surface), file);
       continue;
     }
     std::vector<Dropped> dropped;
     double waited = 0;
-    surfaces.push_back(take_surface(input, &dropped, waited));
-    names.push_back(file);
+    add(take_surface(input, &dropped, waited), file);
     report_dropped(dropped, file, run.report, !run.line.check.json);
   }
+  spaces.report();
 }
 
 TriangleMesh joined(const std::vector<TriangleMesh>& surfaces) {
@@ -88,7 +94,7 @@ TriangleMesh joined(const std::vector<TriangleMesh>& surfaces) {
 void compare_with_surfaces(TetMesh& mesh, CommandRun& run, CheckReport& check) {
   std::vector<TriangleMesh> surfaces;
   std::vector<std::string> names;
-  read_surfaces(run, surfaces, names);
+  read_surfaces(mesh, run, surfaces, names);
   check.surface = compare_with_surfaces(mesh, surfaces, names);
   measure_distances(mesh, joined(surfaces), "the surfaces", run);
   const std::optional<Length>& tolerance = run.line.options.target.tolerance;

@@ -4,8 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "common/geometry/box_tree.h"
-#include "common/images/grid_box.h"
 #include "common/message_text.h"
 #include "tetwright/embedding.h"
 #include "tetwright/files.h"
@@ -15,6 +13,7 @@
 #include "tools/app/commands/command_run.h"
 #include "tools/app/commands/commands.h"
 #include "tools/app/commands/output_paths.h"
+#include "tools/app/commands/surfaces_of_mesh.h"
 #include "tools/app/printed_report.h"
 #include "tools/report/stats_json.h"
 
@@ -26,19 +25,6 @@ namespace {
 /// with their file before it is written. 3 million points in 200,000 tets take 960 MB.
 constexpr double embed_program_bytes = 40e6;
 constexpr double embed_bytes_per_tet = 110, bytes_per_point = 100, file_bytes_per_point = 240;
-
-Box3 box_of_tets(const TetMesh& mesh) {
-  Box3 box;
-  for (const Tet& tet : mesh.tets)
-    for (const Index p : tet) box.add(mesh.points[p]);
-  return box;
-}
-
-Box3 box_of_points(const std::vector<Vec3>& points) {
-  Box3 box;
-  for (const Vec3& p : points) box.add(p);
-  return box;
-}
 
 TetMesh read_carrier(CommandRun& run) {
   Input input = input_named(run.line.inputs.front(), run.line, run.in_memory);
@@ -88,14 +74,14 @@ Embedding make_embedding(CommandRun& run) {
   const std::string &mesh_name = line.inputs.front(), &surface_name = line.inputs.back();
   run.progress.begin_stage("read");
   const TetMesh mesh = read_carrier(run);
-  const TriangleMesh surface = read_carried(run);
+  TriangleMesh surface = read_carried(run);
+  SpacesOfSurfaces spaces(mesh, run);
+  spaces.add(surface, surface_name);
+  spaces.report();
   run.report.input_points = surface.points.size();
   run.report.input_triangles = surface.triangles.size();
   run.report.seconds_read = run.since_start.seconds();
   run.report.loops_read = run.since_start.loops();
-  const Box3 carrier = box_of_tets(mesh), carried = box_of_points(surface.points);
-  if (!carrier.intersects(carried))
-    throw boxes_apart(surface_name, "it does not meet " + mesh_name, "it", carried, mesh_name, carrier);
   const auto points = static_cast<double>(surface.points.size());
   require_memory(embed_program_bytes + embed_bytes_per_tet * static_cast<double>(mesh.tets.size()) +
                      bytes_per_point * points +

@@ -43,6 +43,7 @@ class Mesh:
     tets: np.ndarray
     materials: np.ndarray
     material_names: dict[int, str]
+    space: str
     interface_triangles: np.ndarray
     interface_materials: np.ndarray
     interface_patches: np.ndarray

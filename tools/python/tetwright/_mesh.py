@@ -148,6 +148,11 @@ class TetMesh:
         return Interfaces(self._core)
 
     @property
+    def space(self) -> str:
+        """Coordinate system of the points, such as "left-posterior-superior"; "": unknown."""
+        return self._core.space
+
+    @property
     def wedges(self) -> np.ndarray:
         """(k, 6) uint32: cohesive elements without volume between the sides of parted interfaces. Corners 0, 1, 2 are
         on the first side, their normal points to the second; corner i + 3 has the position of corner i."""

@@ -198,9 +198,11 @@ class BrickScratch;
 struct PrepareReport {
   std::vector<std::string> inputs;
   std::size_t input_triangles = 0, input_points = 0;
-  std::string space;                    ///< of surfaces, see TriangleMesh::space
-  std::string material_field;           ///< cell field of a tet mesh that gives its materials
-  std::optional<VolumeReport> volume;   ///< if the input is a segmented volume
+  std::string space;                   ///< of surfaces or the tet mesh, see TetMesh::space
+  std::string material_field;          ///< cell field of a tet mesh that gives its materials
+  std::optional<VolumeReport> volume;  ///< if the input is a segmented volume
+  /// Coordinate system of the first input, and so of the result; empty: unknown.
+  const std::string& space_of_result() const { return volume ? volume->space : space; }
   std::vector<Diagnostic> diagnostics;  ///< findings and shortfalls
   std::optional<MesherReport> mesher;
   std::optional<CoarserCells> coarser;
@@ -292,7 +294,7 @@ Prepared simplify_mesh(Input mesh, const PrepareOptions& options = {}, Progress*
 Prepared improve_mesh(Input mesh, const PrepareOptions& options = {}, Progress* progress = nullptr);
 
 /// Adds the values of images to a tet mesh, which otherwise stays as it is, with its fields. Uses only
-/// `values`, `material_field`, `limits` and `acceptance`.
+/// `values`, `material_field`, `mesh_space`, `limits` and `acceptance`.
 Prepared add_values(Input mesh, const PrepareOptions& options, Progress* progress = nullptr);
 
 }  // namespace tetwright

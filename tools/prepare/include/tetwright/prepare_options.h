@@ -66,8 +66,8 @@ struct BodyOptions {
   /// True: each solid, group or label of a surface's triangles becomes a material of that name instead of a
   /// patch.
   bool split_solids = false;
-  /// Coordinate system of surfaces whose files name none, see TriangleMesh::space. Empty: that of the first
-  /// input.
+  /// Coordinate system of surfaces and of a size field whose files name none, see TriangleMesh::space. Empty:
+  /// that of the first input.
   std::string surface_space;
 };
 
@@ -204,9 +204,10 @@ struct InterfaceRequest {
 };
 
 /// Options of prepare(), mesh_scans(), simplify_mesh() and improve_mesh(). prepare() uses all of them;
-/// mesh_scans() ignores `shapes` and `schedule`; simplify_mesh() ignores `cells`, `bodies` and `labels`;
-/// improve_mesh() uses only `shapes`, `values`, `selections`, `parting`, `feature_angle`, `order`, `seed`,
-/// `limits` and `acceptance`.
+/// mesh_scans() ignores `shapes` and `schedule`; simplify_mesh() ignores `cells`, `labels`, and `bodies`
+/// except for `surface_space`; improve_mesh() uses only `shapes`, `values`, `selections`, `parting`,
+/// `feature_angle`, `order`, `mesh_space`, `seed`, `limits` and `acceptance`. Only those of tet meshes use
+/// `mesh_space`.
 struct PrepareOptions {
   CellOptions cells;
   BodyOptions bodies;
@@ -227,6 +228,7 @@ struct PrepareOptions {
   ScheduleOptions schedule;
   int order = 1;               ///< order of the elements, 1 or 2; 2 adds midside nodes
   std::string material_field;  ///< cell field of a tet mesh that gives its materials; empty: default
+  std::string mesh_space;      ///< coordinate system of a tet mesh whose file names none; empty: unknown
   std::uint64_t seed = 1;      ///< equal seeds give equal bytes
   LimitOptions limits;
   AcceptanceOptions acceptance;

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <string>
+
+#include "common/geometry/box_tree.h"
+#include "tetwright/surface_mesh.h"
+#include "tetwright/tet_mesh.h"
+#include "tools/app/commands/command_run.h"
+#include "tools/prepare/surface_spaces.h"
+
+namespace tetwright {
+
+/// Brings surfaces that a command compares with its tet mesh into the space of that mesh.
+class SpacesOfSurfaces {
+ public:
+  /// \param mesh first input of the run; its space is that of its file, else that of --mesh-space
+  /// \throws UsageError if there is --surface-space, and the space of the mesh is unknown
+  SpacesOfSurfaces(const TetMesh& mesh, CommandRun& run);
+
+  /// Brings a surface into the space of the mesh, if both are known.
+  /// \throws InputError with the boxes of both if they do not meet
+  void add(TriangleMesh& surface, const std::string& file);
+
+  /// Adds notes about the surfaces that were added to the report of the run.
+  void report();
+
+ private:
+  CommandRun& run_;
+  SurfaceSpaces spaces_;
+  Box3 box_;  ///< of the tets
+};
+
+}  // namespace tetwright
