@@ -98,10 +98,13 @@ DenseMesh mesh_labels(const LabelInput& labels, const MesherOptions& options, Pr
 
   stages.begin("octree");
   std::vector<MortonKey> interface_voxels = volume.field->interface_voxels();
-  return mesh_field(std::move(volume.field), std::move(interface_voxels), std::move(volume.finer), options,
-                    label_memory(labels, cell_size(labels, options)), std::move(report), stages,
-                    [&](const std::vector<std::uint8_t>& there) { validate_materials_left(labels, there); })
-      .dense;
+  DenseMesh dense =
+      mesh_field(std::move(volume.field), std::move(interface_voxels), std::move(volume.finer), options,
+                 label_memory(labels, cell_size(labels, options)), std::move(report), stages,
+                 [&](const std::vector<std::uint8_t>& there) { validate_materials_left(labels, there); })
+          .dense;
+  dense.mesh.space = labels.space;
+  return dense;
 }
 
 }  // namespace tetwright

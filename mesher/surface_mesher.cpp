@@ -180,6 +180,7 @@ class SurfaceMeshing {
                                 [&](const std::vector<std::uint8_t>& there) { validate_there(there); });
 
     DenseMesh dense = std::move(made.dense);
+    dense.mesh.space = volume_ ? volume_->labels.space : input_.space;
     settle_features(input_, closed_gaps_, features_, dense, surroundings());
     if (has_features(input_, features_)) fit_features(dense, made.parts ? &*made.parts : nullptr);
     dense.report.creases.add(border);
@@ -258,14 +259,11 @@ class SurfaceMeshing {
                     options_.keep_outside},
                    stages_.progress());
     NarrowPatches cells = cells_around(films.finer, voxels_, max_depth, budget_.base_tets);
-    std::vector<Vec3> narrow = films.too_thin;
-    for (const RefinementRegion& film : films.finer)
-      if (film.halvings > cells.finer.refinement) narrow.push_back(film.place);
-    if (!narrow.empty()) report_.narrow_labels = {narrow.size(), narrow.front()};
     body_cells_.cells.finer = combine(std::move(body_cells_.cells.finer), std::move(cells.finer));
     std::vector<MortonKey>& voxels = body_cells_.cells.voxels;
     voxels.insert(voxels.end(), cells.voxels.begin(), cells.voxels.end());
     parallel_sort_unique(voxels);
+    report_.narrow_labels = unresolved_films(films, voxels_, {&body_cells_.cells.finer, &label_cells_});
   }
   /// Combines bodies with the volume around them.
   void carve_volume() {

@@ -408,6 +408,7 @@ TetMesh Remesher::mesh() const {
   }
   out.material_names = mesh.names();
   out.patch_groups = mesh.patch_groups();
+  out.space = mesh.coordinate_system();
   const auto add_fields = [](const std::vector<Field>& fields, const char* name,
                              const std::vector<Index>& slots, std::vector<MeshField>& to) {
     for (std::size_t i = 0; i < fields.size(); ++i) {

@@ -323,12 +323,14 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
      .title = "labels beside bodies narrower than a cell",
      .message =
          "bodies run less than a cell beside an interface of labels, or the border of the volume, at N "
-         "locations, the first at X Y Z (cells there are larger than the gap, and tets may be poor)",
+         "locations, the first at X Y Z (cells there are larger than the gap, so that tets may be "
+         "poor; smaller cells or a higher --max-refinement resolve it)",
      .cause = "Between a body and an interface that is nearly parallel to it, smaller cells are needed than "
-              "`--max-refinement` or the number of dense tets that this may cost allow.",
-     .remedy =
-         "A higher `--max-refinement` or `--target-tets`, or a body that is moved onto the interface or "
-         "away from it."},
+              "`--max-refinement` or the number of dense tets that this may cost allow. Or the border is "
+              "nearer than "
+              "the smallest cells beside bodies are wide, a quarter of a voxel.",
+     .remedy = "Smaller cells or a higher `--max-refinement`. At the border: a body that ends in it, crosses "
+               "it, or keeps away from it."},
     {.code = surface_space_unknown,
      .name = "surface-space-unknown",
      .severity = Severity::note,
@@ -340,6 +342,15 @@ constexpr std::array input_table = std::to_array<DiagnosticKind>({
               "`SPACE=LPS` or `SPACE=RAS` into their headers.",
      .remedy =
          "None needed if they are in that of the first input. Otherwise `--surface-space LPS` or `RAS`."},
+    {.code = mesh_space_unused,
+     .name = "mesh-space-unused",
+     .severity = Severity::note,
+     .title = "--mesh-space for a mesh that names another one",
+     .message =
+         "mesh in left-posterior-superior, not right-anterior-superior (--mesh-space is not used, since "
+         "the mesh names its space)",
+     .cause = "`--mesh-space` is for tet meshes whose files name no coordinate system.",
+     .remedy = "Leave the option out. If the file is wrong, correct `SPACE` in it."},
     {.code = tet_points_merged,
      .name = "tet-points-merged",
      .severity = Severity::note,

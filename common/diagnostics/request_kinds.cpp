@@ -188,6 +188,19 @@ constexpr std::array request_table = std::to_array<DiagnosticKind>({
      .cause = "More than 0.1 % of the tets have a smaller solid angle than the default bound. Those in "
               "wedges of the input that are too narrow are counted separately.",
      .remedy = "More tets, or `tetwright improve --free-count`."},
+    {.code = target_too_small,
+     .name = "target-too-small",
+     .severity = Severity::note,
+     .certain = false,
+     .title = "number of tets too small for good shapes",
+     .message =
+         "--target-tets N is too small for good shapes: the materials take at least about N tets ('NAME' N "
+         "at a mean thickness of D, ...)",
+     .cause =
+         "Volumes and areas show that the materials are too thin to be filled by so few well-shaped tets. "
+         "It is said before meshing, and stays in the report if the result has poor tets or misses the "
+         "count.",
+     .remedy = "The number in the line, or without the materials that it names."},
     {.code = tets_still_below,
      .name = "tets-still-below",
      .severity = Severity::note,

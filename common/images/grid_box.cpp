@@ -24,10 +24,12 @@ Box3 box_of_voxels(const VoxelIndex& size, const Vec3& origin, const Eigen::Matr
 Box3 box_of(const LabelGrid& grid) { return box_of_voxels(grid.size, grid.origin, grid.directions); }
 
 InputError boxes_apart(const std::string& file, const std::string& message, const std::string& first,
-                       const Box3& first_box, const std::string& second, const Box3& second_box) {
+                       const Box3& first_box, const std::string& second, const Box3& second_box,
+                       const std::string& spaces) {
   return {file, 0,
           message + ": " + first + " reaches from " + box_text(first_box) + ", " + second + " from " +
-              box_text(second_box) + "; check origin, spacing, unit and coordinate system of both"};
+              box_text(second_box) + "; check origin, spacing, unit and coordinate system of both" +
+              (spaces.empty() ? "" : ": " + spaces)};
 }
 
 }  // namespace tetwright

@@ -20,7 +20,9 @@ Box3 box_of(const LabelGrid& grid);
 /// The error for a volume and something else whose boxes do not meet.
 /// \param message what does not meet
 /// \param first, second subjects of "reaches from", with their boxes
+/// \param spaces what is known of their coordinate systems; may be empty
 InputError boxes_apart(const std::string& file, const std::string& message, const std::string& first,
-                       const Box3& first_box, const std::string& second, const Box3& second_box);
+                       const Box3& first_box, const std::string& second, const Box3& second_box,
+                       const std::string& spaces = {});
 
 }  // namespace tetwright

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -17,6 +19,18 @@ struct RefinementRegions {
   /// for cells of two voxels.
   std::vector<std::vector<MortonKey>> cells;
   int coarsest_interface_level = 2;  ///< see OctreeOptions
+
+  /// Whether the cell around a point must be split.
+  /// \param point voxels, not below 0
+  /// \param depth halvings of a voxel that give the cell
+  bool splits(const Vec3& point, int depth) const {
+    if (depth >= refinement) return false;
+    const Vec3 cell = point * std::ldexp(1, depth);
+    const std::vector<MortonKey>& level = cells[static_cast<std::size_t>(refinement - depth)];
+    return std::binary_search(
+        level.begin(), level.end(),
+        morton_encode(static_cast<int>(cell[0]), static_cast<int>(cell[1]), static_cast<int>(cell[2])));
+  }
 };
 
 /// A region that is too thin for its cells somewhere.

@@ -151,6 +151,7 @@ MesherInput make_mesher_input(std::vector<MaterialSurface> surfaces, std::vector
                               Progress* progress, const SheetOptions& sheets, const CapOptions& caps) {
   if (surfaces.empty()) throw UsageError("there is no surface to mesh");
   MesherInput input;
+  input.space = surfaces.front().surface.space;
   close_open_surfaces(surfaces, caps.open, input.findings);
   std::map<std::size_t, WalledSurface> joined = join_patches(surfaces, contact, input.findings, progress);
   name_groups(surfaces, input.findings);

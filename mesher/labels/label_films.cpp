@@ -45,17 +45,22 @@ class FilmProbe {
   /// Whether the border is nearer than films may be, with labels before it. Interfaces there would be left to
   /// the layer, but the border stays as it is.
   /// \param normal of length 1
-  bool is_too_thin_at_border(const Vec3& point, const Vec3& normal) const {
+  /// \return the distance from the border if so
+  std::optional<double> too_thin_at_border(const Vec3& point, const Vec3& normal) const {
     const double distance = to_border(point);
-    if (distance <= LabelTuning::Border::slack || distance >= options_.min_film ||
+    if (distance <= LabelTuning::Border::slack ||
+        distance >= std::min(options_.min_film, Films::max_thickness) ||
         to_border(point + distance / Films::min_parallel * normal) >= 0)
-      return false;
-    return options_.keep_outside || sampler_->nearest(point + distance / 2 * normal).region != outside_region;
+      return {};
+    const bool is_meshed =
+        options_.keep_outside || sampler_->nearest(point + distance / 2 * normal).region != outside_region;
+    return is_meshed ? std::optional(distance) : std::nullopt;
   }
 
   /// The thickness of a film, if there is one.
   /// \param normal of length 1
   std::optional<double> thickness(const Vec3& point, const Vec3& normal) const {
+    if (options_.layer >= Films::max_thickness) return {};
     double inside = options_.min_film;
     const Vec3 start = point + inside * normal;
     if (to_border(start) < 0) return {};
@@ -96,21 +101,26 @@ class FilmProbe {
   FilmOptions options_;
 };
 
-/// A point around which cells are halved.
+enum class FilmPointKind : std::uint8_t { to_halve, on_body };
+
+/// A point around which cells are halved, or a point of a body at a film.
 struct FilmPoint {
+  FilmPointKind kind;
   MortonKey cell;  ///< of the size of the layer
-  int halvings;    ///< 0: the film is thinner than cells become
-  Vec3 at;         ///< lattice coordinates
+  int halvings;
+  Vec3 at;  ///< lattice coordinates
 };
 
-/// Keeps one of the points in each cell, with the most halvings there.
+/// Keeps one point of each kind in each cell, with the most halvings there.
 void keep_one_in_each_cell(std::vector<FilmPoint>& points) {
   std::sort(points.begin(), points.end(), [](const FilmPoint& a, const FilmPoint& b) {
-    return std::tuple(a.cell, -a.halvings, a.at[0], a.at[1], a.at[2]) <
-           std::tuple(b.cell, -b.halvings, b.at[0], b.at[1], b.at[2]);
+    return std::tuple(a.kind, a.cell, -a.halvings, a.at[0], a.at[1], a.at[2]) <
+           std::tuple(b.kind, b.cell, -b.halvings, b.at[0], b.at[1], b.at[2]);
   });
   points.erase(std::unique(points.begin(), points.end(),
-                           [](const FilmPoint& a, const FilmPoint& b) { return a.cell == b.cell; }),
+                           [](const FilmPoint& a, const FilmPoint& b) {
+                             return a.kind == b.kind && a.cell == b.cell;
+                           }),
                points.end());
 }
 
@@ -130,20 +140,24 @@ class FilmSearch {
       if (!(across.norm() > 0)) return;
       const Vec3 normal = across.normalized();
       for_each_point(corners, spacing(), [&](const Vec3& point) {
-        if (probe.is_too_thin_at_border(point, normal)) add(point, 0);
+        const auto is_taken = [&](double thickness) {
+          const Vec3 within = frame.to_input(point + thickness / 2 * normal);
+          return std::any_of(others.begin(), others.end(),
+                             [&](const SurfaceTree* other) { return other->winding_number(within) > 0.5; });
+        };
+        if (const auto gap = probe.too_thin_at_border(point, normal); gap && !is_taken(*gap))
+          add(FilmPointKind::on_body, point, LabelFilms::too_many_halvings);
         const std::optional<double> film = probe.thickness(point, normal);
-        if (!film) return;
-        const Vec3 within = frame.to_input(point + *film / 2 * normal);
-        if (std::any_of(others.begin(), others.end(),
-                        [&](const SurfaceTree* other) { return other->winding_number(within) > 0.5; }))
-          return;
-        if (const int halvings = probe.halvings(*film); halvings > 0)
-          for (const double off : {0.0, *film}) add(point + off * normal, halvings);
+        if (!film || is_taken(*film)) return;
+        const int halvings = probe.halvings(*film);
+        if (halvings <= 0) return;
+        add(FilmPointKind::on_body, point, halvings);
+        for (const double off : {0.0, *film}) add(FilmPointKind::to_halve, point + off * normal, halvings);
       });
     });
   }
   void search_creases(const RepairedSurface& surface, const SurfacePatches& patches) {
-    if (!patches.any()) return;
+    if (!patches.any() || options_.layer >= Films::max_thickness) return;
     const GridFrame& frame = labels_.frame();
     const SurfaceCreases creases = find_creases(surface.points, surface.triangles, patches.patches);
     search(creases.segments.size(), [&](std::size_t i, const FilmProbe& probe, const auto& add) {
@@ -153,21 +167,17 @@ class FilmSearch {
       const int n = std::max(1, static_cast<int>(std::ceil((to - from).norm() / spacing())));
       for (int k = 0; k <= n; ++k) {
         const Vec3 point = from + (to - from) * k / n;
-        if (probe.follows_interface(point, (to - from).normalized())) add(point, probe.halvings_to_layer());
+        if (probe.follows_interface(point, (to - from).normalized()))
+          add(FilmPointKind::to_halve, point, probe.halvings_to_layer());
       }
     });
   }
   LabelFilms take() {
     keep_one_in_each_cell(points_);
     LabelFilms films;
-    films.finer.reserve(points_.size());
-    for (const FilmPoint& p : points_) {
-      const Vec3 at = labels_.frame().to_input(p.at);
-      if (p.halvings > 0)
-        films.finer.push_back({at, p.halvings});
-      else
-        films.too_thin.push_back(at);
-    }
+    for (const FilmPoint& p : points_)
+      (p.kind == FilmPointKind::to_halve ? films.finer : films.on_bodies)
+          .push_back({labels_.frame().to_input(p.at), p.halvings});
     return films;
   }
 
@@ -175,18 +185,19 @@ class FilmSearch {
   /// Cells around a point are halved up to a distance of one of them, and one of the smallest is a layer.
   double spacing() const { return 2 * options_.layer; }
 
-  /// \param work is called with an item, a probe, and a function that adds a point with its halvings
+  /// \param work is called with an item, a probe, and a function that adds a point of a kind with its
+  ///   halvings
   template <class Work>
   void search(std::size_t count, const Work& work) {
     const std::vector<FilmPoint> found = parallel_collect<FilmPoint>(
         0, count, LabelGrains::films, [&](std::size_t begin, std::size_t end, std::vector<FilmPoint>& out) {
           if (progress_) progress_->throw_if_stopped();
           const FilmProbe probe(labels_, options_);
-          const auto add = [&](const Vec3& point, int halvings) {
+          const auto add = [&](FilmPointKind kind, const Vec3& point, int halvings) {
             std::array<int, 3> cell;
             for (int a = 0; a < 3; ++a)
               cell[a] = std::max(0, static_cast<int>(std::floor(point[a] / options_.layer)));
-            out.push_back({morton_encode(cell[0], cell[1], cell[2]), halvings, point});
+            out.push_back({kind, morton_encode(cell[0], cell[1], cell[2]), halvings, point});
           };
           for (std::size_t i = begin; i < end; ++i) work(i, probe, add);
           keep_one_in_each_cell(out);
@@ -204,7 +215,6 @@ class FilmSearch {
 
 LabelFilms find_films(const MesherInput& bodies, const std::vector<SurfacePatches>& patches,
                       const LabelField& labels, const FilmOptions& options, const Progress* progress) {
-  if (options.layer >= Films::max_thickness) return {};
   std::vector<SurfaceTree> trees;
   if (bodies.bodies.size() > 1)
     for (const MesherInput::Body& body : bodies.bodies)
@@ -218,6 +228,22 @@ LabelFilms find_films(const MesherInput& bodies, const std::vector<SurfacePatche
     search.search_creases(bodies.bodies[b].surface, patches[b]);
   }
   return search.take();
+}
+
+NarrowLabelsReport unresolved_films(const LabelFilms& films, const GridFrame& voxels,
+                                    std::initializer_list<const RefinementRegions*> finer) {
+  NarrowLabelsReport report;
+  for (const RefinementRegion& film : films.on_bodies) {
+    const bool at_border = film.halvings == LabelFilms::too_many_halvings;
+    const Vec3 at = voxels.to_grid(film.place);
+    if (!at_border && std::any_of(finer.begin(), finer.end(), [&](const RefinementRegions* cells) {
+          return cells->splits(at, film.halvings - 1);
+        }))
+      continue;
+    if ((at_border ? report.at_border : report.places)++ == 0)
+      (at_border ? report.first_at_border : report.first) = film.place;
+  }
+  return report;
 }
 
 }  // namespace tetwright

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <initializer_list>
+#include <limits>
 #include <vector>
 
+#include "mesher/domain/grid_frame.h"
+#include "mesher/domain/refinement_regions.h"
 #include "mesher/labels/label_field.h"
 #include "tetwright/mesher.h"
 #include "tetwright/mesher_input.h"
@@ -20,9 +24,11 @@ struct FilmOptions {
 
 /// Films of labels beside bodies, input units.
 struct LabelFilms {
-  std::vector<RefinementRegion> finer;  ///< points along surfaces, interfaces and creases
-  /// Points of bodies at films between them and the border of the volume that are thinner than cells become.
-  std::vector<Vec3> too_thin;
+  /// For films between a body and the border of the volume that are thinner than cells become.
+  static constexpr int too_many_halvings = std::numeric_limits<int>::max();
+
+  std::vector<RefinementRegion> finer;      ///< points along surfaces, interfaces and creases
+  std::vector<RefinementRegion> on_bodies;  ///< points of bodies at films, with the halvings that these need
 };
 
 /// Finds films: where a body's outer side is less than a cell from a nearly parallel interface of labels, or
@@ -35,5 +41,11 @@ struct LabelFilms {
 /// \throws Interrupted
 LabelFilms find_films(const MesherInput& bodies, const std::vector<SurfacePatches>& patches,
                       const LabelField& labels, const FilmOptions& options, const Progress* progress);
+
+/// The films for which cells are not small enough.
+/// \param voxels the frame of the cells
+/// \param finer all cells that are split
+NarrowLabelsReport unresolved_films(const LabelFilms& films, const GridFrame& voxels,
+                                    std::initializer_list<const RefinementRegions*> finer);
 
 }  // namespace tetwright

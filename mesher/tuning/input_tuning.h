@@ -35,6 +35,12 @@ struct InputTuning {
     static constexpr std::size_t max_plain_queries = 16;
   };
 
+  struct RegionExtents {
+    /// Points of a component at which the bodies around it are looked up: parts of bodies that cross without
+    /// being joined are rarely so small that all points miss them.
+    static constexpr std::size_t places = 7;
+  };
+
   struct Soups {
     /// Corners of two triangles closer than this, in sizes of a triangle, may be one point that was rounded:
     /// single precision far from the origin.

@@ -10,6 +10,7 @@ namespace tetwright {
 struct LabelGrains {
   static constexpr std::size_t tiles = 2;              ///< several milliseconds each where labels meet
   static constexpr std::size_t slices = 8;             ///< each is read with the next one
+  static constexpr std::size_t counted_slices = 16;    ///< with a table of all regions
   static constexpr std::size_t voxels = 1 << 18;       ///< mostly skipped
   static constexpr std::size_t thin_voxels = 1 << 16;  ///< with the cells around each, most of them the same
   static constexpr std::size_t films = 64;             ///< triangles, each with points all over it
@@ -19,6 +20,18 @@ struct LabelGrains {
 /// guide, Labels, lists the guarantees that depend on these. A share is the fraction of a voxel that a label
 /// occupies.
 struct LabelTuning {
+  /// Areas of regions of voxels.
+  struct Extents {
+    /// Samples of all directions: the shares of directions are accurate to a percent.
+    static constexpr int directions = 10000;
+    /// Voxel faces that make a contact of two regions a part of their boundaries; fewer may be noise.
+    static constexpr std::size_t min_contact_faces = 16;
+    /// Area of voxel faces by the estimated area, along an axis and in the mean of all directions, and the
+    /// thickness in voxels from which on oblique sheets are even: a shell of one voxel takes twice the tets
+    /// of a flat sheet, one of two voxels as many (benchmarks/README.md, Smallest counts).
+    static constexpr double faces_of_flat = 1.08, faces_of_oblique = 1.5, even_voxels = 2;
+  };
+
   /// Distances from smoothed shares with back projection.
   struct Smoothing {
     /// Max labels in a tile: each takes a megabyte.

@@ -192,6 +192,7 @@ TetMesh MeshCompaction::to_mesh() {
   std::vector<InterfaceTriangle> sheets = mesh_.sheets(number);
   mesh.material_names = std::move(mesh_.names_);
   mesh.patch_groups = std::move(mesh_.patch_groups_);
+  mesh.space = std::move(mesh_.coordinate_system_);
   mesh_.tets_ = {};
   mesh_.regions_ = {};
   mesh_.qualities_ = {};

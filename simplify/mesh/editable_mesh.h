@@ -54,6 +54,8 @@ class EditableMesh {
   MaterialTag tag(RegionId region) const { return tags_[region]; }
   const std::map<MaterialTag, std::string>& names() const { return names_; }
   const std::map<InterfacePatch, SurfaceRegion>& patch_groups() const { return patch_groups_; }
+  /// TetMesh::space of the mesh.
+  const std::string& coordinate_system() const { return coordinate_system_; }
   const WorkingSpace& space() const { return space_; }
   Vec3 snap(const Vec3& working) const { return space_.snap(working); }
 
@@ -243,6 +245,7 @@ class EditableMesh {
   std::vector<MaterialTag> tags_;  ///< by region
   std::map<MaterialTag, std::string> names_;
   std::map<InterfacePatch, SurfaceRegion> patch_groups_;
+  std::string coordinate_system_;  ///< TetMesh::space
   WorkingSpace space_;
 };
 

@@ -39,6 +39,7 @@ void MeshBuilder::build(TetMesh&& input) {
     throw InputError(name_, 0, std::to_string(input.tets.size()) + " tets are more than the 2^30 possible");
   mesh_.names_ = std::move(input.material_names);
   mesh_.patch_groups_ = std::move(input.patch_groups);
+  mesh_.coordinate_system_ = std::move(input.space);
   take_points(std::move(input.points));
   take_tets(input);
   const std::vector<InterfaceTriangle> interfaces = std::move(input.interfaces);

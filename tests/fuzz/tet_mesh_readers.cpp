@@ -60,6 +60,7 @@ void run(std::string_view bytes, Read read, Write write, Read read_back) {
     TETWRIGHT_CHECK(back.points == mesh.points);
     TETWRIGHT_CHECK(back.tets == mesh.tets);
     TETWRIGHT_CHECK(back.materials == mesh.materials);
+    TETWRIGHT_CHECK(back.space == mesh.space);
     constexpr std::size_t max_tets = 100;  // maximum size of meshes passed to further functions
     if (mesh.tets.size() >= max_tets) return;
     // A format may change names and components in the first round trip, but not in the second.

@@ -270,9 +270,16 @@ TEST(ImplantedBorder, GapsThatCellsDoNotResolveAreNamed) {
   const NarrowLabelsReport narrow = checked(volume, options).report.narrow_labels;
   EXPECT_GT(narrow.places, 20u);
   EXPECT_TRUE(narrow.first.x() >= 9.49 && narrow.first.x() <= 10) << narrow.first.transpose();
-  // Without such a gap.
-  const ImplantedVolume apart = implanted(labels, {make_box(Vec3(11.5, 4, 3), Vec3(15, 9, 8))});
-  EXPECT_EQ(checked(apart, options).report.narrow_labels.places, 0u);
+  // Without such a gap: away from the interface, and in it.
+  for (const double x : {11.5, 9.5}) {
+    const ImplantedVolume other = implanted(labels, {make_box(Vec3(x, 4, 3), Vec3(15, 9, 8))});
+    EXPECT_EQ(checked(other, options).report.narrow_labels.places, 0u) << x;
+  }
+  // A gap at the border of less than any cell.
+  const ImplantedVolume near = implanted(labels, {make_box(Vec3(12, 4, 3), Vec3(19.4, 9, 8))});
+  const NarrowLabelsReport at_border = checked(near).report.narrow_labels;
+  EXPECT_EQ(at_border.places, 0u);
+  EXPECT_GT(at_border.at_border, 20u);
 }
 
 TEST(ImplantedBorder, BodiesOffAllLabelsAreNamed) {

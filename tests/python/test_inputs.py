@@ -54,7 +54,7 @@ def test_every_code_has_cause_and_remedy():
     # accept_changes concerns shortfalls alone, and a note that is not certain is no warning
     assert {kind.severity for kind in kinds.values() if kind.acceptable} == {"shortfall"}
     assert [name for name, kind in kinds.items() if not kind.certain] == [
-        "solid-uncertain", "thin-parts-uncertain", "base-added", "sheet-thickened"]
+        "target-too-small", "solid-uncertain", "thin-parts-uncertain", "base-added", "sheet-thickened"]
     assert kinds["solid-changed"].acceptable and not kinds["target-missed"].acceptable
 
 
@@ -447,9 +447,14 @@ def test_surfaces_are_brought_into_the_space_of_a_mesh(tmp_path):
                         + "".join(f"f {a + 1} {b + 1} {c + 1}\n" for a, b, c in CUBE_TRIANGLES))
         return path
     mesh = tetwright.mesh(write("ras.obj", "RAS", 1), resolution=8)
-    assert mesh.space == "right-anterior-superior"
+    assert mesh.space == mesh.stats["input"]["space"] == "right-anterior-superior"
     mesh.write(tmp_path / "m.vtu")
     assert tetwright.read(tmp_path / "m.vtu").space == mesh.space
     assert "(brought into that of the first input" in str(tetwright.check(mesh, surface=write("lps.obj", "LPS", -1)).notes)
     with pytest.raises(tetwright.InputError, match="does not meet"):
         tetwright.check(mesh, surface=write("lps.obj", "LPS", 1))
+    # Values in memory are in the coordinates of the mesh.
+    assert tetwright.check(mesh, surface=FAR_CUBE).notes == []
+    assert tetwright.embed(mesh, FAR_CUBE).notes == []
+    found = tetwright.check(mesh, surface=write("lps.obj", "LPS", -1))
+    assert [d["code"] for d in found["diagnostics"]] == ["space-converted"]

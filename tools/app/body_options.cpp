@@ -56,7 +56,8 @@ void add_surface_space(CLI::App& app, CommandLine& c, const std::string& descrip
 void add_mesh_space(CLI::App& app, CommandLine& c) {
   add_space(
       app, "--mesh-space", c.options.mesh_space,
-      "Coordinate system of MESH if its file names none; all other inputs are brought into that of MESH");
+      "Coordinate system of MESH if its file names none; surfaces, images and sizes are brought into that of "
+      "MESH");
 }
 
 void add_bodies(CLI::App& app, CommandLine& c) {

@@ -138,10 +138,12 @@ void complete_command_line(CommandLine& out) {
   if (makes_mesh(out.command)) check_options(task_of(out.command), out.options);
   if (out.command == Command::check && out.options.target.tolerance && out.check.surfaces.empty())
     throw UsageError("--tolerance needs the surfaces that the mesh is compared with; give --surface FILE");
-  if (out.command == Command::check && !out.options.bodies.surface_space.empty() &&
-      out.check.surfaces.empty())
-    throw UsageError(
-        "--surface-space is for the surfaces that the mesh is compared with; give --surface FILE");
+  if (out.command == Command::check && out.check.surfaces.empty())
+    for (const auto& [option, space] : {std::pair("--surface-space", &out.options.bodies.surface_space),
+                                        {"--mesh-space", &out.options.mesh_space}})
+      if (!space->empty())
+        throw UsageError(std::string(option) +
+                         " is for the surfaces that the mesh is compared with; give --surface FILE");
   if (out.options.order > 1 && !out.outputs.mesh.empty())
     check_holds_second_order(out.outputs.mesh, out.outputs.format);
   check_interface_options(out);

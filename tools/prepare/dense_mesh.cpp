@@ -17,6 +17,7 @@
 #include "tools/prepare/expected_time.h"
 #include "tools/prepare/gap_opening.h"
 #include "tools/prepare/implant_input.h"
+#include "tools/prepare/small_target.h"
 
 namespace tetwright {
 
@@ -107,6 +108,7 @@ DenseMesh mesh_input(const MesherInput& surfaces, PrepareRun& run) {
     return Need{whole, static_cast<double>(whole.bytes), {}};
   };
   if (choose) fit_memory(surfaces, need, options, run);
+  if (target_decides(run)) compare_with_target(min_tets(surfaces), run);
   if (!target.tolerance) {
     DenseMesh dense = mesh_surfaces(surfaces, options, &run.progress);
     run.report.gap_opening = find_gap_opening(surfaces, dense.report, run.options);
@@ -164,6 +166,7 @@ DenseMesh mesh_input(LabelInput& labels, PrepareRun& run) {
          static_cast<double>(labels.voxel_count())},
         std::min(thread_count(), std::max(1u, std::thread::hardware_concurrency()))));
   read_sizes(run, box_of_voxels(labels.size, labels.origin, labels.directions));
+  if (target_decides(run)) compare_with_target(min_tets(labels), run);
   if (target.tolerance && run.task == Task::mesh)
     throw UsageError(
         "--tolerance of 'mesh' is for surfaces; for a volume use 'prepare --tolerance', which bounds the "
@@ -218,6 +221,7 @@ DenseMesh mesh_input(ImplantedVolume& volume, PrepareRun& run) {
   box.add(bodies.low);
   box.add(bodies.high);
   read_sizes(run, box);
+  if (target_decides(run)) compare_with_target(min_tets(volume), run);
   DenseMesh dense = mesh_implanted(volume, options, &run.progress);
   report_carving(*dense.report.carved, *run.report.volume);
   if (target.tolerance) run.report.tolerance = tolerance_of(*target.tolerance, diagonal_of(dense.mesh));

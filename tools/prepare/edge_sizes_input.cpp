@@ -13,27 +13,30 @@ namespace tetwright {
 
 namespace {
 
-void bring_into_space_of_first(const SizeFieldInput& field, PrepareRun& run) {
+/// \return what is known of the spaces of both, see SurfaceSpaces::both_spaces(); may be empty
+std::string bring_into_space_of_first(const SizeFieldInput& field, PrepareRun& run) {
   PrepareReport& report = run.report;
   const std::string& given = run.options.bodies.surface_space;
   // A value in memory is in the coordinates of the caller's other ones unless it says so.
-  if (field.source && field.source->space().empty() && given.empty()) return;
+  if (field.source && field.source->space().empty() && given.empty()) return {};
   SurfaceSpaces spaces(given, "size field");
   spaces.begin_with(report.space_of_result(), report.inputs.front(),
                     run.task == Task::simplify || run.task == Task::improve);
+  const std::string before = report.sizes.source->space();
   spaces.add(report.sizes.source, field.name);
   const std::vector<Diagnostic> findings = spaces.findings();
   report.diagnostics.insert(report.diagnostics.end(), findings.begin(), findings.end());
+  return spaces.both_spaces(before, field.name);
 }
 
 /// Refuses sizes within a volume that the input does not meet. Those of a surface count anywhere.
 void require_sizes_meet(const SizeSource& sizes, const std::string& file, const Box3& box,
-                        const std::string& input) {
+                        const std::string& input, const std::string& spaces) {
   if (!sizes.fills_space()) return;
   Box3 of_sizes;
   sizes.for_each_value([&](const Vec3& place, double) { of_sizes.add(place); });
   if (!of_sizes.intersects(box))
-    throw boxes_apart(file, "it has no sizes in " + input, "it", of_sizes, input, box);
+    throw boxes_apart(file, "it has no sizes in " + input, "it", of_sizes, input, box, spaces);
 }
 
 }  // namespace
@@ -50,9 +53,9 @@ void read_sizes(PrepareRun& run, const Box3& box) {
                      short_number(sizes.limits.min_edge) + "; give a larger one, or leave one of them out");
   if (!asked.field) return;
   sizes.source = asked.field->source ? asked.field->source : read_size_field(asked.field->name);
-  bring_into_space_of_first(*asked.field, run);
+  const std::string spaces = bring_into_space_of_first(*asked.field, run);
   if (!(diagonal > 0)) return;  // nothing to mesh; reported elsewhere
-  require_sizes_meet(*sizes.source, asked.field->name, box, run.report.inputs.front());
+  require_sizes_meet(*sizes.source, asked.field->name, box, run.report.inputs.front(), spaces);
   sizes.target_length =
       std::make_shared<const SizeField>(*sizes.source, box.low, box.high, wanted_within(sizes.limits));
 }

@@ -341,6 +341,18 @@ void find_thin_part(const ThinPartReport& thin, PrepareReport& report) {
        .places = {thin.first}});
 }
 
+/// \param count locations where bodies run beside something
+void find_narrow_labels(std::size_t count, const Vec3& first, const std::string& beside,
+                        const std::string& done, PrepareReport& report) {
+  if (count == 0) return;
+  report.diagnostics.push_back(
+      {.code = DiagnosticCode::narrow_labels,
+       .what = "bodies run less than a cell beside " + beside + " at " + std::to_string(count) +
+               (count == 1 ? " location, at " : " locations, the first at ") + place_text(first),
+       .done = done,
+       .places = {first}});
+}
+
 /// Adds notes about parts that are small or thin relative to the cells.
 void find_small_parts(PrepareReport& report) {
   for (const FeatureReport& f : report.features)
@@ -374,16 +386,15 @@ void find_small_parts(PrepareReport& report) {
                                   .what = "'" + name + "' is in no label of the volume, only outside",
                                   .done = "meshed beside them; check its position and --surface-space if it "
                                           "should carve labels"});
-  if (const NarrowLabelsReport& narrow = report.mesher->narrow_labels; narrow.places > 0)
-    report.diagnostics.push_back(
-        {.code = DiagnosticCode::narrow_labels,
-         .what =
-             "bodies run less than a cell beside an interface of labels, or the border of the volume, at " +
-             std::to_string(narrow.places) +
-             (narrow.places == 1 ? " location, at " : " locations, the first at ") + place_text(narrow.first),
-         .done = "cells there are larger than the gap, so that tets may be poor",
-         .remedy = "raise --max-refinement or --target-tets, or move the body",
-         .places = {narrow.first}});
+  const NarrowLabelsReport& narrow = report.mesher->narrow_labels;
+  find_narrow_labels(narrow.places, narrow.first, "an interface of labels, or the border of the volume,",
+                     "cells there are larger than the gap, so that tets may be poor; smaller cells or a "
+                     "higher --max-refinement resolve it",
+                     report);
+  find_narrow_labels(narrow.at_border, narrow.first_at_border, "the border of the volume",
+                     "no cells resolve a gap that thin, so that tets may be poor; let the body end in the "
+                     "border, cross it, or keep away from it",
+                     report);
   for (const ThinPartReport& t : report.mesher->thin_parts) find_thin_part(t, report);
 }
 

@@ -212,6 +212,16 @@ void check_bricks(Task task, const PrepareOptions& options) {
                      std::to_string(max_brick_cells) + ", not " + std::to_string(cells));
 }
 
+/// Rejects names such as "LPS", which would be taken for an unknown system.
+void check_space(const char* option, const std::string& space) {
+  const std::string known = "right-anterior-superior";
+  TriangleMesh nothing;
+  nothing.space = space;
+  if (!space.empty() && space != known && !change_space(nothing, known))
+    throw UsageError(std::string(option) + ": " + in_quotes(space) +
+                     " is no anatomical coordinate system; give left-posterior-superior or " + known);
+}
+
 }  // namespace
 
 const char* conflict_with_bricks(const PrepareOptions& options) {
@@ -247,6 +257,8 @@ void check_options(Task task, const PrepareOptions& options) {
   if (const std::optional<double>& p = options.images.outside_probability; p && !(*p >= 0 && *p <= 1))
     throw UsageError("--outside-probability " + short_number(*p) +
                      " is no probability; give a number from 0 to 1 (for other values --iso)");
+  check_space("--mesh-space", options.mesh_space);
+  check_space("--surface-space", options.bodies.surface_space);
   check_value_options(task, options.values);
   check_parting(options);
   if (options.bricks.use == BrickOptions::Use::always) check_bricks(task, options);

@@ -7,6 +7,7 @@
 
 #include "common/message_text.h"
 #include "tools/prepare/limiting_rules.h"
+#include "tools/prepare/small_target.h"
 
 namespace tetwright {
 
@@ -96,8 +97,12 @@ void find_count_and_shapes(PrepareRun& run) {
   const bool improved = run.task == Task::improve;
   const double asked = static_cast<double>(improved ? report.dense->tets : options.target.tets.value_or(0));
   const double reached = static_cast<double>(report.result->tets);
-  if ((improved || options.target.tets.value_or(0) > 0) && !options.shapes.free_count &&
-      std::fabs(reached - asked) > (improved ? improve_slack : target_slack) * asked)
+  const bool missed = std::fabs(reached - asked) > (improved ? improve_slack : target_slack) * asked;
+  // The estimate is of tets above the default bound.
+  const bool poor =
+      options.shapes.bound() <= default_min_solid_angle && report.result->below_percent > bad_note_percent;
+  if (!poor && !(missed && reached > asked)) forget_small_target(report);
+  if ((improved || options.target.tets.value_or(0) > 0) && !options.shapes.free_count && missed)
     add(DiagnosticCode::target_missed, improved ? "about the same count" : "--target-tets", asked, reached,
         rules_behind_count(run, asked, reached));
   if (options.shapes.min_solid_angle && report.result->min_solid_angle < options.shapes.bound())

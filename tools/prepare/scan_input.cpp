@@ -254,8 +254,8 @@ std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs, 
   };
   SurfaceSpaces spaces(run.options.bodies.surface_space);
   if (volume) spaces.begin_with(volume->space, volume->file);
-  const auto take = [&](TriangleMesh surface, const std::string& file) {
-    spaces.add(surface, file);
+  const auto take = [&](TriangleMesh surface, const Input& input) {
+    spaces.add(surface, input);
     report.input_triangles += surface.triangles.size();
     report.input_points += surface.points.size();
     return surface;
@@ -264,7 +264,7 @@ std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs, 
     std::vector<Dropped> dropped;
     TriangleMesh surface = take_surface(input, &dropped, run.seconds_waited);
     report_dropped(dropped, input.name, report);
-    return take(std::move(surface), input.name);
+    return take(std::move(surface), input);
   };
   std::vector<SplitFile> split;
   for (Input& input : inputs) {
@@ -272,10 +272,10 @@ std::vector<MaterialSurface> read_material_surfaces(std::vector<Input>& inputs, 
     if (input.role != Input::Role::body) {
       sheets.push_back({input.material, read(input), file, input.role == Input::Role::partition});
     } else if (!input.material.empty()) {
-      add(input.material, file, input.is_vdb_file() ? take(read_one_level_set(input), file) : read(input));
+      add(input.material, file, input.is_vdb_file() ? take(read_one_level_set(input), input) : read(input));
     } else if (input.is_vdb_file()) {
       for (NamedSurface& s : read_level_sets(file))
-        add(s.name.empty() ? file_stem(file) : s.name, file, take(std::move(s.surface), file));
+        add(s.name.empty() ? file_stem(file) : s.name, file, take(std::move(s.surface), input));
     } else if (split_solids_asked) {
       std::vector<NamedSurface> solids = split_solids(read(input), input.material_name());
       if (solids.size() == 1) {

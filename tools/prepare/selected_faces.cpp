@@ -36,7 +36,8 @@ void report_far_points(const SelectedFaces& selected, PrepareReport& report) {
   for (const auto& [rule, distance] : selected.far_points)
     report.diagnostics.push_back({.code = DiagnosticCode::point_off_patch,
                                   .what = "--select " + selected.name + ": the point of " + in_quotes(rule) +
-                                          " is " + short_number(distance) + " from the nearest face"});
+                                          " is " + short_number(distance) + " from the nearest face",
+                                  .remedy = "check its coordinates and units"});
 }
 
 }  // namespace

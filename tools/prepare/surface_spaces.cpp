@@ -25,6 +25,17 @@ std::string known_or_not(const std::string& space) { return space.empty() ? "unk
 
 }  // namespace
 
+std::string space_of_tets(const TetMesh& mesh, const std::string& file, const std::string& mesh_space,
+                          PrepareReport& report) {
+  if (mesh.space.empty()) return mesh_space;
+  if (!mesh_space.empty() && mesh_space != mesh.space)
+    report.diagnostics.push_back({.code = DiagnosticCode::mesh_space_unused,
+                                  .file = file,
+                                  .what = "mesh in " + mesh.space + ", not " + mesh_space,
+                                  .done = "--mesh-space is not used, since the mesh names its space"});
+  return mesh.space;
+}
+
 void SurfaceSpaces::begin_with(const std::string& space, const std::string& file, bool tet_mesh) {
   first_file_ = file;
   first_space_ = space;
@@ -48,15 +59,16 @@ void SurfaceSpaces::note(const std::string& before, bool converted, const std::s
     not_comparable_[before].push_back(file);
 }
 
-void SurfaceSpaces::add(TriangleMesh& surface, const std::string& file) {
+void SurfaceSpaces::add(TriangleMesh& surface, const Input& input) {
   if (surface.space.empty()) surface.space = of_others_;
   if (first_file_.empty()) {
-    first_file_ = file;
+    first_file_ = input.name;
     first_space_ = surface.space;
     return;
   }
+  if (surface.space.empty() && input.is_value()) return;
   const std::string before = surface.space;
-  note(before, change_space(surface, first_space_), file);
+  note(before, change_space(surface, first_space_), input.name);
 }
 
 void SurfaceSpaces::add(std::shared_ptr<const SizeSource>& sizes, const std::string& file) {
@@ -64,6 +76,21 @@ void SurfaceSpaces::add(std::shared_ptr<const SizeSource>& sizes, const std::str
   std::shared_ptr<const SizeSource> changed = change_space(sizes, before, first_space_);
   note(before, changed != nullptr, file);
   if (changed) sizes = std::move(changed);
+}
+
+std::string SurfaceSpaces::both_spaces(const std::string& space, const std::string& file) const {
+  const std::string known = space.empty() ? of_others_ : space;
+  TriangleMesh nothing;
+  nothing.space = known;
+  if (change_space(nothing, first_space_))
+    return file + " was brought from " + known + " into " + first_space_ + ", that of " + first_file_;
+  const auto text = [](const std::string& of, const std::string& name, const char* option) {
+    std::string out = "that of " + name + " is " + known_or_not(of);
+    if (of.empty() && option) out += std::string(" (") + option + " LPS or RAS names it)";
+    return out;
+  };
+  return text(known, file, "--surface-space") + ", " +
+         text(first_space_, first_file_, first_is_tet_mesh_ ? "--mesh-space" : nullptr);
 }
 
 std::vector<Diagnostic> SurfaceSpaces::findings() const {

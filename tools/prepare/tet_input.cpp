@@ -10,6 +10,7 @@
 #include "tetwright/mesh_quality.h"
 #include "tetwright/sheets.h"
 #include "tools/prepare/edge_sizes_input.h"
+#include "tools/prepare/surface_spaces.h"
 
 namespace tetwright {
 
@@ -103,7 +104,7 @@ TetMesh read_tets_unchanged(Input from, PrepareRun& run) {
   check_input_kind(from, run.task);
   ReadTetMesh read = take_tet_mesh(from, {run.options.material_field}, run.seconds_waited);
   run.report.material_field = read.material_field;
-  run.report.space = read.mesh.space.empty() ? run.options.mesh_space : read.mesh.space;
+  run.report.space = space_of_tets(read.mesh, from.name, run.options.mesh_space, run.report);
   run.report.input_points = read.mesh.points.size();
   report_dropped(read.dropped, from.name, run.report);
   run.progress.throw_if_stopped();
@@ -124,7 +125,7 @@ TetInput read_tets(Input from, PrepareRun& run) {
   check_input_kind(from, run.task);
   ReadTetMesh read = take_tet_mesh(from, {run.options.material_field}, run.seconds_waited);
   run.report.material_field = read.material_field;
-  run.report.space = read.mesh.space.empty() ? run.options.mesh_space : read.mesh.space;
+  run.report.space = space_of_tets(read.mesh, file, run.options.mesh_space, run.report);
   run.report.input_points = read.mesh.points.size();
   run.progress.throw_if_stopped();
   std::vector<InterfaceToPart> joined = join_read_interfaces(read, file, run.report);

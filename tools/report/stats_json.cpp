@@ -165,6 +165,7 @@ nlohmann::json input_json(const PrepareReport& run) {
   nlohmann::json j = {
       {"files", run.inputs}, {"triangles", run.input_triangles}, {"points", run.input_points}};
   if (!run.material_field.empty()) j["material_field"] = run.material_field;
+  if (const std::string& space = run.space_of_result(); !space.empty()) j["space"] = space;
   if (run.volume) j["volume"] = volume_json(*run.volume, run.material_colours);
   j["findings"] = nlohmann::json::array();
   for (const Diagnostic& d : run.diagnostics) {
@@ -339,7 +340,10 @@ void add_mesher_json(const MesherReport& m, nlohmann::json& dense) {
                                    {"places", t.places},
                                    {"first", place_json(t.first)},
                                    {"refined", t.refined}});
-  dense["narrow_labels"] = {{"places", m.narrow_labels.places}, {"first", place_json(m.narrow_labels.first)}};
+  dense["narrow_labels"] = {{"places", m.narrow_labels.places},
+                            {"first", place_json(m.narrow_labels.first)},
+                            {"at_border", m.narrow_labels.at_border},
+                            {"first_at_border", place_json(m.narrow_labels.first_at_border)}};
   dense["filling_tets"] = m.filling_tets;
   dense["thickened_walls"] = {{"points", m.thickened.points},
                               {"offset", m.thickened.offset},
@@ -406,6 +410,8 @@ std::string stats_json(const CommandRun& ended) {
   j["input"] = input_json(run);
   if (run.dense) j["dense"] = mesh_json(*run.dense, run.material_names, line.options.shapes.bound());
   if (run.mesher) add_mesher_json(*run.mesher, j["dense"]);
+  for (const MinTets& m : run.min_tets)
+    j["min_tets"].push_back({{"name", m.name}, {"tets", m.tets}, {"thickness", m.thickness}});
   if (run.bricks) j["dense"]["bricks"] = bricks_json(*run.bricks);
   j["result"] =
       run.result ? mesh_json(*run.result, run.material_names, line.options.shapes.bound()) : nlohmann::json();
@@ -467,7 +473,9 @@ std::string check_json(const CommandRun& ended, const CheckReport& check) {
                              {"count", f.count},
                              {"places", places}});
   }
-  j["diagnostics"] = diagnostics_json(diagnostics_of(check));
+  std::vector<Diagnostic> diagnostics = diagnostics_of(check);
+  diagnostics.insert(diagnostics.end(), run.diagnostics.begin(), run.diagnostics.end());
+  j["diagnostics"] = diagnostics_json(diagnostics);
   if (check.measurable) {
     j["mesh"] = mesh_json(*run.result, run.material_names, line.options.shapes.bound());
     j["topology"] = topology_json(*check.topology, run.material_names);

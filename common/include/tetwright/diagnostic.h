@@ -45,6 +45,7 @@ enum class DiagnosticCode : std::uint8_t {
   notes_not_allowed,
   // The result.
   angles_below_bound,
+  target_too_small,
   tets_still_below,
   volume_changed,
   parts_touch,
@@ -110,6 +111,7 @@ enum class DiagnosticCode : std::uint8_t {
   body_off_labels,
   narrow_labels,
   surface_space_unknown,
+  mesh_space_unused,
   // Tet meshes.
   tet_points_merged,
   tets_collapsed,

@@ -74,7 +74,7 @@ class SizeSource {
 };
 
 /// The lengths of a source in another coordinate system.
-/// \param from system of the source, also if SizeSource::space() is empty
+/// \param from system of the source; counts instead of SizeSource::space(), which may be empty
 /// \return null if nothing would change: the systems are equal, or one of them is unknown
 std::shared_ptr<const SizeSource> change_space(std::shared_ptr<const SizeSource> sizes,
                                                const std::string& from, const std::string& to);

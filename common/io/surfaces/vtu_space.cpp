@@ -7,6 +7,7 @@
 #include "common/io/elements/vtk_cells.h"
 #include "common/io/encodings/vtu_arrays.h"
 #include "common/io/surfaces/declared_space.h"
+#include "tetwright/error.h"
 
 namespace tetwright {
 
@@ -16,10 +17,14 @@ std::string space_of_vtu_array(const VtuData& data, pugi::xml_node array) {
   const int tuples = array.attribute("NumberOfTuples").as_int();
   constexpr int length = 3;  // of LPS and RAS
   std::string text;
-  if (type == "String" && tuples == 1)
-    data.texts(array, 1, [&](std::string_view name) { text = name; });
-  else if (type == "UInt8" && tuples == length)
-    for (const std::int64_t c : data.integers(array, length)) text += static_cast<char>(c);
+  try {
+    if (type == "String" && tuples == 1)
+      data.texts(array, 1, [&](std::string_view name) { text = name; });
+    else if (type == "UInt8" && tuples == length)
+      for (const std::int64_t c : data.integers(array, length)) text += static_cast<char>(c);
+  } catch (const InputError&) {
+    return {};  // another program's array of this name, with something else in it
+  }
   return space_called(text);
 }
 

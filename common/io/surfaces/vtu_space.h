@@ -9,12 +9,12 @@
 
 namespace tetwright {
 
-/// Whether a child of FieldData names a coordinate system that this program knows: an array SPACE with the
-/// text "LPS" or "RAS" as 3D Slicer writes it, or with its bytes.
-/// \return the system, see TetMesh::space; empty if it is no such array
+/// The coordinate system that a child of FieldData names, see TetMesh::space: an array SPACE with the text
+/// "LPS" or "RAS" as 3D Slicer writes it, or with its bytes.
+/// \return empty for any other array, also for a damaged one
 std::string space_of_vtu_array(const VtuData& data, pugi::xml_node array);
 
-/// The system that the FieldData of a grid name, or empty.
+/// The system that the FieldData of a grid names, or empty.
 std::string read_vtu_space(const VtuData& data, pugi::xml_node grid);
 
 /// Writes such an array with the bytes of the text; nothing for another system.

@@ -279,6 +279,7 @@ struct MesherInput {
   std::vector<OverlapReport> overlaps = {};
   std::vector<Sheet> sheets = {};
   std::vector<SurfaceHole> holes = {};  ///< of all surfaces, largest first
+  std::string space = {};               ///< of the first surface, see TriangleMesh::space
 };
 
 /// The reason why surfaces do not define the solid of a material with certainty: a flaw of its own surface or

@@ -149,7 +149,7 @@ struct ImproveOptions {
   double min_solid_angle = 0.1;  ///< steradians; improvement ends early once all tets are well above it
   ShapeObjective objective = ShapeObjective::both;
   /// Lets the count vary as shapes require, between 0.8 and 4 times the input's; while tets are still below
-  /// min_solid_angle at the end, down to 0.5 times.
+  /// min_solid_angle at the end, down to 0.5 times unless only_below is given.
   bool free_count = false;
   int max_iterations = 100;  ///< rounds
   std::uint64_t seed = 1;

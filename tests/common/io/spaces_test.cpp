@@ -83,6 +83,11 @@ TEST(SpacesInFiles, TextsOf3DSlicerAreRead) {
   EXPECT_TRUE(slicer.dropped.empty());
   for (const char* other :
        {R"(<DataArray type="UInt8" Name="SPACE" NumberOfTuples="3" format="ascii">76 65 83</DataArray>)",
+        R"(<DataArray type="UInt8" Name="SPACE" NumberOfTuples="3" format="ascii">L P S</DataArray>)",
+        R"(<DataArray type="UInt8" Name="SPACE" NumberOfTuples="3" format="ascii">76 80 83 0</DataArray>)",
+        R"(<Array type="String" Name="SPACE" NumberOfTuples="1" format="ascii">76 80 83</Array>)",
+        R"(<Array type="String" Name="SPACE" NumberOfTuples="1" format="ascii">76 0 80 0</Array>)",
+        R"(<Array type="String" Name="SPACE" NumberOfTuples="1" format="binary">*</Array>)",
         R"(<DataArray type="Float64" Name="SPACE" NumberOfTuples="2" format="ascii">0.5 2</DataArray>)"}) {
     const ReadTetMesh found = read(other);
     EXPECT_EQ(found.mesh.space, "");

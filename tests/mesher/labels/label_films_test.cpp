@@ -98,14 +98,21 @@ TEST_F(LabelFilms, AtTheBorder) {
   for (const RefinementRegion& r : found) EXPECT_EQ(r.halvings, 2);
   EXPECT_TRUE(films_of(make_box(Vec3(16, 6, 6), Vec3(23.5, 16, 17))).empty());
   // The border cannot turn towards the body, as interfaces do.
-  const auto too_thin = [&](double x) {
-    return all_films({make_box(Vec3(16, 6, 6), Vec3(x, 16, 17))}).too_thin;
+  const auto too_thin = [&](double x, const std::vector<TriangleMesh>& others = {}) {
+    std::vector<TriangleMesh> surfaces{make_box(Vec3(16, 6, 6), Vec3(x, 16, 17))};
+    surfaces.insert(surfaces.end(), others.begin(), others.end());
+    std::vector<Vec3> points;
+    for (const RefinementRegion& r : all_films(surfaces).on_bodies)
+      if (r.halvings == tetwright::LabelFilms::too_many_halvings) points.push_back(r.place);
+    return points;
   };
   EXPECT_TRUE(too_thin(23.1).empty());
   EXPECT_GT(too_thin(23.4).size(), 100u);
   for (const Vec3& p : too_thin(23.4)) EXPECT_NEAR(p.x(), 23.4, 1e-9);
   EXPECT_TRUE(too_thin(23.495).empty());
-  EXPECT_TRUE(all_films({box_at(11.6)}).too_thin.empty());
+  EXPECT_TRUE(too_thin(23.4, {make_box(Vec3(23.4, 4, 4), Vec3(25, 18, 19))}).empty());
+  for (const RefinementRegion& r : all_films({box_at(11.6)}).on_bodies)
+    EXPECT_NE(r.halvings, tetwright::LabelFilms::too_many_halvings);
   // The outside is not meshed, but the gap to a label is.
   use(make_labels({24, 24, 24}, [](int x, int, int) { return x < 12 ? 1 : 0; }));
   EXPECT_TRUE(films_of(make_box(Vec3(16, 6, 6), Vec3(23.1, 16, 17))).empty());

@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <array>
+#include <map>
+#include <utility>
+
+#include "common/random.h"
 #include "common/samples/random_interior.h"
 #include "tests/simplify/meshes.h"
 #include "tetwright/mesh_quality.h"
@@ -152,6 +157,80 @@ TEST(Improvement, MendsMeshesWithRandomInteriors) {
     }
     for (const MeshFinding& f : check_mesh(after)) ADD_FAILURE() << mesh_finding_line(f);
     for (const std::string& d : topology_differences(topology(mesh), topology(after))) ADD_FAILURE() << d;
+  }
+}
+
+/// A cube with nine points on each face, filled with tets from its centre that are divided at random points
+/// in them until there are `count`: the larger of two random tets is divided each time.
+TetMesh divided_at_random(std::size_t count, std::uint64_t seed) {
+  TetMesh mesh;
+  std::map<std::array<int, 3>, Index> numbers;
+  const auto number = [&](const std::array<int, 3>& at) {
+    const auto [found, added] = numbers.try_emplace(at, static_cast<Index>(mesh.points.size()));
+    if (added) mesh.points.emplace_back(at[0], at[1], at[2]);
+    return found->second;
+  };
+  const Index centre = number({0, 0, 0});
+  const auto volume = [&](const Tet& t) {
+    const Vec3& a = mesh.points[t[0]];
+    return (mesh.points[t[1]] - a).cross(mesh.points[t[2]] - a).dot(mesh.points[t[3]] - a);
+  };
+  const auto add = [&](Tet t) {
+    if (volume(t) < 0) std::swap(t[2], t[3]);
+    mesh.tets.push_back(t);
+  };
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    for (const int side : {-1, 1})
+      for (int i = -1; i < 1; ++i)
+        for (int j = -1; j < 1; ++j) {
+          const auto corner = [&](int u, int v) {
+            std::array<int, 3> at{};
+            at[axis] = side, at[(axis + 1) % 3] = u, at[(axis + 2) % 3] = v;
+            return number(at);
+          };
+          const Index a = corner(i, j), b = corner(i + 1, j), c = corner(i + 1, j + 1), d = corner(i, j + 1);
+          add({centre, a, b, c});
+          add({centre, a, c, d});
+        }
+  Random random(seed);
+  while (mesh.tets.size() < count) {
+    const auto any = [&] { return random.below(static_cast<std::uint32_t>(mesh.tets.size())); };
+    std::uint32_t chosen = any();
+    if (const std::uint32_t other = any(); volume(mesh.tets[other]) > volume(mesh.tets[chosen]))
+      chosen = other;
+    const Tet tet = mesh.tets[chosen];
+    Vec3 place = Vec3::Zero();
+    double sum = 0;
+    for (const Index p : tet) {
+      const double weight = 0.05 + random.uniform();
+      place += weight * mesh.points[p];
+      sum += weight;
+    }
+    const auto inner = static_cast<Index>(mesh.points.size());
+    mesh.points.emplace_back(place / sum);
+    for (std::size_t k = 0; k < 4; ++k) {
+      Tet part = tet;
+      part[k] = inner;
+      if (k == 0)
+        mesh.tets[chosen] = part;
+      else
+        mesh.tets.push_back(part);
+    }
+  }
+  mesh.materials.assign(mesh.tets.size(), 1);
+  return mesh;
+}
+
+TEST(Improvement, FreeCountLeavesHardlyAPoorTetInRandomInteriors) {
+  for (const std::uint64_t seed : {1, 2}) {
+    const TetMesh mesh = divided_at_random(1000, seed);
+    EXPECT_GT(mesh_statistics(mesh, 0.1).below_percent, 60) << seed;
+    ImproveOptions options;
+    options.free_count = true;
+    const TetMesh after = improve(mesh, options);
+    EXPECT_LE(mesh_statistics(after, 0.1).below_percent, 0.2) << seed;
+    for (const MeshFinding& f : check_mesh(after)) ADD_FAILURE() << mesh_finding_line(f);
+    EXPECT_NEAR(mesh_statistics(after).volume, 8, 0.05);
   }
 }
 

@@ -221,6 +221,8 @@ class SpacesBesideAMesh : public SurfaceSpacesOfCalls {
   }
 };
 
+const char* const unused =
+    "m.vtu: mesh in right-anterior-superior, not left-posterior-superior (--mesh-space is not used";
 const char* const converted = "(brought into that of the first input, right-anterior-superior)";
 
 TEST_F(SpacesBesideAMesh, FilesOfTheMeshNameIt) {
@@ -236,9 +238,10 @@ TEST_F(SpacesBesideAMesh, FilesOfTheMeshNameIt) {
   EXPECT_EQ(read_tet_mesh(path("s.vtu")).mesh.space, "right-anterior-superior");
   EXPECT_EQ(read_surface(path("s.ply")).space, "right-anterior-superior");
   // The file counts more than the option.
-  ASSERT_EQ(run("values " + path("m.vtu") + " ct=" + write_image() + " --mesh-space LPS -o " + path("v.vtu"))
-                .status,
-            0);
+  const Answer a =
+      run("values " + path("m.vtu") + " ct=" + write_image() + " --mesh-space LPS -o " + path("v.vtu"));
+  ASSERT_EQ(a.status, 0);
+  EXPECT_NE(a.err.find(unused), std::string::npos) << a.err;
   EXPECT_EQ(read_tet_mesh(path("v.vtu")).mesh.space, "right-anterior-superior");
 }
 
@@ -250,7 +253,10 @@ TEST_F(SpacesBesideAMesh, SurfacesOfCheckAreBroughtIntoIt) {
     EXPECT_EQ(a.status, 0) << a.err;
     EXPECT_NE(a.err.find(converted), std::string::npos) << words << a.err;
     EXPECT_LT(distance(a), 1) << words;
+    EXPECT_NE(a.out.find("\"space-converted\""), std::string::npos) << words << a.out;
   }
+  const Answer a = run("check " + path("m.vtu") + " --mesh-space LPS --surface " + path("lps.stl"));
+  EXPECT_NE(a.err.find(unused), std::string::npos) << a.err;
 }
 
 TEST_F(SpacesBesideAMesh, SurfacesElsewhereAreRefusedWithBothBoxes) {
@@ -259,8 +265,19 @@ TEST_F(SpacesBesideAMesh, SurfacesElsewhereAreRefusedWithBothBoxes) {
                             " from (1.";
   for (const std::string& words : {"check " + path("m.vtu") + " --surface " + path("lps.ply"),
                                    "embed " + path("m.vtu") + " " + path("lps.ply") + " -o " + path("w.npz")})
-    expect_refused(words, 3, {boxes});
-  expect_refused("check " + path("m.msh") + " --surface " + path("lps.stl"), 3, {"it does not meet"});
+    expect_refused(words, 3,
+                   {boxes, "coordinate system of both: that of " + path("lps.ply") +
+                               " is unknown (--surface-space LPS or RAS names it), that of " + path("m.vtu") +
+                               " is right-anterior-superior"});
+  expect_refused("check " + path("m.msh") + " --surface " + path("lps.stl"), 3,
+                 {"it does not meet", "that of " + path("lps.stl") + " is left-posterior-superior, that of " +
+                                          path("m.msh") + " is unknown (--mesh-space LPS or RAS names it)"});
+  const std::string mirrored =
+      write("mirrored.stl", with_header(box({2, 2, 2}, {13, 13, 13}), ".stl", "LPS"));
+  expect_refused(
+      "check " + path("m.vtu") + " --surface " + mirrored, 3,
+      {mirrored + " was brought from left-posterior-superior into right-anterior-superior, that of " +
+       path("m.vtu")});
   // A surface elsewhere beside one that meets the mesh.
   const std::string meets = write("ras.stl", with_header(box({2, 2, 2}, {13, 13, 13}), ".stl", "RAS"));
   expect_refused("check " + path("m.vtu") + " --surface " + meets + " " + path("lps.ply"), 3,
@@ -345,7 +362,8 @@ TEST_F(SpacesBesideAMesh, SizesAreBroughtIntoIt) {
     EXPECT_GT(small, 2 * (mesh.points.size() - small)) << words;
   }
   expect_refused("simplify " + path("m.vtu") + " --size-field " + plain + out, 3,
-                 {"plain.vtk: it has no sizes in ", "it reaches from (-16, -16, 0) to (0, 0, 16), "});
+                 {"plain.vtk: it has no sizes in ", "it reaches from (-16, -16, 0) to (0, 0, 16), ",
+                  "plain.vtk is unknown (--surface-space LPS or RAS names it), that of "});
   // Their boxes share a layer of voxels.
   expect_refused("prepare " + labels + " --size-field " + plain + out, 3,
                  {"plain.vtk: the sizes end within the body"});
@@ -358,6 +376,7 @@ TEST_F(SurfaceSpacesOfCalls, WrongOptionsAreRefused) {
   const std::string mesh = folder_ / "m.msh";
   const std::string surface = write("lps.stl", with_header(box(low, high), ".stl", "LPS"));
   expect_refused("check " + mesh + " --surface-space LPS", 2, {"--surface-space", "give --surface FILE"});
+  expect_refused("check " + mesh + " --mesh-space LPS", 2, {"--mesh-space is for", "give --surface FILE"});
   expect_refused("check " + mesh + " --surface-space LPS --surface " + surface, 2,
                  {"m.msh, is unknown", "name it by --mesh-space LPS or RAS"});
   expect_refused("simplify " + mesh + " --target-tets 100 --surface-space LPS" + out, 2,

@@ -3,7 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "common/samples/samples.h"
 #include "tests/common/io/expect_error.h"
+#include "tetwright/mesher.h"
+#include "tetwright/remesher.h"
+#include "tetwright/simplify.h"
 
 namespace tetwright::surface_spaces_test {
 namespace {
@@ -90,6 +96,23 @@ TEST(SurfaceSpaces, WithoutAnyHeaderNothingIsSaid) {
       "it cannot be compared with that of the first input, unknown)\n");
 }
 
+TEST(SurfaceSpaces, NothingIsSaidOfValuesInMemoryThatNameNone) {
+  SurfaceSpaces spaces("");
+  spaces.begin_with(ras, "m.vtu", true);
+  TriangleMesh skin = triangle(""), lead = triangle(lps), plate = triangle("");
+  spaces.add(skin, {"skin", skin});
+  spaces.add(lead, {"lead", lead});
+  EXPECT_EQ(lead.points[0], Vec3(-1, -2, 3));
+  EXPECT_EQ(texts(spaces),
+            "m.vtu: 1 surface in another space, left-posterior-superior: 'lead' (brought into that of the "
+            "first input, right-anterior-superior)\n");
+  // The option counts for them, too.
+  SurfaceSpaces given(lps);
+  given.begin_with(ras, "m.vtu", true);
+  given.add(plate, {"plate", plate});
+  EXPECT_EQ(plate.points[0], Vec3(-1, -2, 3));
+}
+
 TEST(SurfaceSpaces, OfSizesAreThatOfTheMesh) {
   const auto sizes_in = [](const std::string& space) -> std::shared_ptr<const SizeSource> {
     return surface_sizes(triangle(space), {1, 2, 3});
@@ -127,6 +150,35 @@ TEST(SurfaceSpaces, AMeshWithoutOneIsNamedByAnOption) {
   EXPECT_NE(message.find("name it by --mesh-space"), std::string::npos) << message;
 }
 
+TEST(SurfaceSpaces, AMeshThatNamesItsOwnDoesNotUseTheOption) {
+  TetMesh mesh = std::get<TetMesh>(make_sample("two_materials"));
+  PrepareReport report;
+  EXPECT_EQ(space_of_tets(mesh, "m.msh", ras, report), ras);
+  mesh.space = lps;
+  EXPECT_EQ(space_of_tets(mesh, "m.vtu", lps, report), lps);
+  EXPECT_EQ(space_of_tets(mesh, "m.vtu", "", report), lps);
+  EXPECT_TRUE(report.diagnostics.empty());
+  EXPECT_EQ(space_of_tets(mesh, "m.vtu", ras, report), lps);
+  ASSERT_EQ(report.diagnostics.size(), 1u);
+  EXPECT_EQ(report.diagnostics[0].code, DiagnosticCode::mesh_space_unused);
+  EXPECT_EQ(
+      diagnostic_text(report.diagnostics[0]),
+      "mesh in left-posterior-superior, not right-anterior-superior (--mesh-space is not used, since the "
+      "mesh names its space)");
+}
+
+TEST(SurfaceSpaces, ShortNamesInOptionsAreRefused) {
+  PrepareOptions options;
+  options.mesh_space = "LPS";
+  const auto improved = [&] {
+    (void)improve_mesh({"m", std::get<TetMesh>(make_sample("two_materials"))}, options);
+  };
+  EXPECT_NE(error_of<UsageError>(improved).find("give left-posterior-superior or right-anterior-superior"),
+            std::string::npos);
+  options.mesh_space = lps;
+  EXPECT_EQ(improve_mesh({"m", std::get<TetMesh>(make_sample("two_materials"))}, options).mesh.space, lps);
+}
+
 TEST(SurfaceSpaces, AnOptionForAVolumeWithoutASpaceIsRefused) {
   for (const char* space : {"", "scanner-xyz"}) {
     SurfaceSpaces spaces(lps);
@@ -134,6 +186,37 @@ TEST(SurfaceSpaces, AnOptionForAVolumeWithoutASpaceIsRefused) {
     EXPECT_NE(message.find("--surface-space"), std::string::npos) << message;
     EXPECT_NE(message.find("head.nrrd"), std::string::npos) << message;
   }
+}
+
+TEST(SpacesOfMeshes, AreThoseOfLabelsAndSurfaces) {
+  LabelVolume volume;
+  volume.size = {6, 6, 6};
+  volume.space = ras;
+  for (int z = 0; z < 6; ++z)
+    for (int y = 0; y < 6; ++y)
+      for (int x = 0; x < 6; ++x) volume.labels.push_back(std::max({x, y, z}) < 5 && x * y * z > 0 ? 1 : 0);
+  const LabelInput labels =
+      make_label_input(std::make_unique<MemoryLabelSource>(std::move(volume)), "v.nrrd", {}, nullptr);
+  EXPECT_EQ(mesh_labels(labels, {}, nullptr).mesh.space, ras);
+  auto ball = std::get<TriangleMesh>(make_sample("sphere"));
+  ball.space = lps;
+  MesherOptions options;
+  options.resolution = 8;
+  EXPECT_EQ(mesh_surfaces(make_mesher_input({{"ball", 1, ball, "ball.ply"}}), options, nullptr).mesh.space,
+            lps);
+}
+
+TEST(SpacesOfMeshes, AreKeptByTheSimplifier) {
+  TetMesh mesh = std::get<TetMesh>(make_sample("two_materials"));
+  mesh.space = ras;
+  EXPECT_EQ(improve(mesh, {}).space, ras);
+  SimplifyOptions options;
+  options.target_tets = mesh.tets.size();
+  EXPECT_EQ(simplify(mesh, options).space, ras);
+  CoarsenOptions coarser;
+  coarser.target_tets = static_cast<double>(mesh.tets.size());
+  EXPECT_EQ(coarsen(mesh, coarser).space, ras);
+  EXPECT_EQ(Remesher(mesh).mesh().space, ras);
 }
 
 }  // namespace

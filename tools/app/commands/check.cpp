@@ -62,20 +62,20 @@ CheckReport examine(TetMesh& mesh, CommandRun& run) {
 void read_surfaces(const TetMesh& mesh, CommandRun& run, std::vector<TriangleMesh>& surfaces,
                    std::vector<std::string>& names) {
   SpacesOfSurfaces spaces(mesh, run);
-  const auto add = [&](TriangleMesh surface, const std::string& file) {
-    spaces.add(surface, file);
+  const auto add = [&](TriangleMesh surface, const Input& input) {
+    spaces.add(surface, input);
     surfaces.push_back(std::move(surface));
-    names.push_back(file);
+    names.push_back(input.name);
   };
   for (const std::string& file : run.line.check.surfaces) {
     Input input = input_named(file, run.line, run.in_memory);
     if (input.is_vdb_file()) {
-      for (NamedSurface& s : read_level_sets(file)) add(std::move(s.surface), file);
+      for (NamedSurface& s : read_level_sets(file)) add(std::move(s.surface), input);
       continue;
     }
     std::vector<Dropped> dropped;
     double waited = 0;
-    add(take_surface(input, &dropped, waited), file);
+    add(take_surface(input, &dropped, waited), input);
     report_dropped(dropped, file, run.report, !run.line.check.json);
   }
   spaces.report();

@@ -34,12 +34,16 @@ TetMesh read_carrier(CommandRun& run) {
   return std::move(read.mesh);
 }
 
-TriangleMesh read_carried(CommandRun& run) {
+/// Reads the surface, brought into the space of the mesh.
+TriangleMesh read_carried(const TetMesh& mesh, CommandRun& run) {
   Input input = input_named(run.line.inputs.back(), run.line, run.in_memory);
   std::vector<Dropped> dropped;
   double waited = 0;
   TriangleMesh surface = take_surface(input, &dropped, waited);
   report_dropped(dropped, input.name, run.report, false);
+  SpacesOfSurfaces spaces(mesh, run);
+  spaces.add(surface, input);
+  spaces.report();
   return surface;
 }
 
@@ -71,13 +75,10 @@ void print_embedding(const CommandRun& run) {
 
 Embedding make_embedding(CommandRun& run) {
   const CommandLine& line = run.line;
-  const std::string &mesh_name = line.inputs.front(), &surface_name = line.inputs.back();
+  const std::string& mesh_name = line.inputs.front();
   run.progress.begin_stage("read");
   const TetMesh mesh = read_carrier(run);
-  TriangleMesh surface = read_carried(run);
-  SpacesOfSurfaces spaces(mesh, run);
-  spaces.add(surface, surface_name);
-  spaces.report();
+  const TriangleMesh surface = read_carried(mesh, run);
   run.report.input_points = surface.points.size();
   run.report.input_triangles = surface.triangles.size();
   run.report.seconds_read = run.since_start.seconds();

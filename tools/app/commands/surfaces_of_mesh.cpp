@@ -27,16 +27,19 @@ Box3 box_of_points(const TriangleMesh& surface) {
 
 SpacesOfSurfaces::SpacesOfSurfaces(const TetMesh& mesh, CommandRun& run)
     : run_(run), spaces_(run.line.options.bodies.surface_space), box_(box_of_tets(mesh)) {
-  run.report.space = mesh.space.empty() ? run.line.options.mesh_space : mesh.space;
+  run.report.space = space_of_tets(mesh, run.line.inputs.front(), run.line.options.mesh_space, run.report);
   spaces_.begin_with(run.report.space, run.line.inputs.front(), true);
 }
 
-void SpacesOfSurfaces::add(TriangleMesh& surface, const std::string& file) {
-  spaces_.add(surface, file);
+void SpacesOfSurfaces::add(TriangleMesh& surface, const Input& input) {
+  const std::string& file = input.name;
+  const std::string before = surface.space;
+  spaces_.add(surface, input);
   const Box3 box = box_of_points(surface);
   const std::string& mesh = run_.line.inputs.front();
   if (!surface.points.empty() && !box.intersects(box_))
-    throw boxes_apart(file, "it does not meet " + mesh, "it", box, mesh, box_);
+    throw boxes_apart(file, "it does not meet " + mesh, "it", box, mesh, box_,
+                      spaces_.both_spaces(before, file));
 }
 
 void SpacesOfSurfaces::report() {

@@ -14,13 +14,15 @@ namespace tetwright {
 /// Brings surfaces that a command compares with its tet mesh into the space of that mesh.
 class SpacesOfSurfaces {
  public:
-  /// \param mesh first input of the run; its space is that of its file, else that of --mesh-space
+  /// Notes the space of the mesh in the report, see space_of_tets().
+  /// \param mesh first input of the run
   /// \throws UsageError if there is --surface-space, and the space of the mesh is unknown
   SpacesOfSurfaces(const TetMesh& mesh, CommandRun& run);
 
   /// Brings a surface into the space of the mesh, if both are known.
-  /// \throws InputError with the boxes of both if they do not meet
-  void add(TriangleMesh& surface, const std::string& file);
+  /// \param input of the surface, which may have been moved out of it
+  /// \throws InputError with the boxes and spaces of both if they do not meet
+  void add(TriangleMesh& surface, const Input& input);
 
   /// Adds notes about the surfaces that were added to the report of the run.
   void report();

@@ -208,6 +208,7 @@ struct PrepareReport {
   std::optional<CoarserCells> coarser;
   std::optional<BrickReport> bricks;  ///< if the volume was meshed in bricks
   GapOpening gap_opening;
+  std::vector<MinTets> min_tets;  ///< of prepare() with a target, by material, see min_tets()
   std::optional<MeshStatistics> dense, result;
   std::vector<ContactReport> contacts;  ///< of bodies that meet, by pair
   std::vector<OverlapReport> overlaps;  ///< of bodies that cross, by pair

@@ -206,8 +206,8 @@ struct InterfaceRequest {
 /// Options of prepare(), mesh_scans(), simplify_mesh() and improve_mesh(). prepare() uses all of them;
 /// mesh_scans() ignores `shapes` and `schedule`; simplify_mesh() ignores `cells`, `labels`, and `bodies`
 /// except for `surface_space`; improve_mesh() uses only `shapes`, `values`, `selections`, `parting`,
-/// `feature_angle`, `order`, `mesh_space`, `seed`, `limits` and `acceptance`. Only those of tet meshes use
-/// `mesh_space`.
+/// `feature_angle`, `order`, `mesh_space`, `seed`, `limits` and `acceptance`. Only the functions of
+/// tet meshes use `mesh_space`.
 struct PrepareOptions {
   CellOptions cells;
   BodyOptions bodies;
@@ -228,8 +228,10 @@ struct PrepareOptions {
   ScheduleOptions schedule;
   int order = 1;               ///< order of the elements, 1 or 2; 2 adds midside nodes
   std::string material_field;  ///< cell field of a tet mesh that gives its materials; empty: default
-  std::string mesh_space;      ///< coordinate system of a tet mesh whose file names none; empty: unknown
-  std::uint64_t seed = 1;      ///< equal seeds give equal bytes
+  /// Anatomical coordinate system of a tet mesh that names none, such as "left-posterior-superior"; empty:
+  /// unknown.
+  std::string mesh_space;
+  std::uint64_t seed = 1;  ///< equal seeds give equal bytes
   LimitOptions limits;
   AcceptanceOptions acceptance;
   KeepOptions keep;
