@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/geometry/box_tree.h"
 #include "mesher/input/region_extents.h"
 #include "mesher/labels/label_extents.h"
 #include "mesher/tuning/estimate_tuning.h"

@@ -98,10 +98,7 @@ void find_count_and_shapes(PrepareRun& run) {
   const double asked = static_cast<double>(improved ? report.dense->tets : options.target.tets.value_or(0));
   const double reached = static_cast<double>(report.result->tets);
   const bool missed = std::fabs(reached - asked) > (improved ? improve_slack : target_slack) * asked;
-  // The estimate is of tets above the default bound.
-  const bool poor =
-      options.shapes.bound() <= default_min_solid_angle && report.result->below_percent > bad_note_percent;
-  if (!poor && !(missed && reached > asked)) forget_small_target(report);
+  if (!improved) settle_small_target(run, target_slack, bad_note_percent);
   if ((improved || options.target.tets.value_or(0) > 0) && !options.shapes.free_count && missed)
     add(DiagnosticCode::target_missed, improved ? "about the same count" : "--target-tets", asked, reached,
         rules_behind_count(run, asked, reached));

@@ -17,6 +17,11 @@ namespace {
 /// Estimates below this say nothing: whether so few tets hold a body depends on its shape more than on its
 /// volume and area.
 constexpr double min_estimate = 150;
+/// Share of the estimate below which a target is too small: rods, and labels of long voxels, hold with a
+/// fifth to a quarter less.
+constexpr double certain_share = 0.75;
+/// Multiple of the estimate above which the number of tets in the result shows more than the estimate.
+constexpr double max_reached = 2;
 /// Materials with less than this share of the estimate are not named, nor more than so many.
 constexpr double named_share = 0.1;
 constexpr std::size_t max_named = 3;
@@ -29,6 +34,12 @@ std::string two_digits_up(double count) {
   return text;
 }
 
+double sum_of(const std::vector<MinTets>& needs) {
+  double sum = 0;
+  for (const MinTets& need : needs) sum += need.tets;
+  return sum;
+}
+
 std::string two_digits(double length) {
   char text[32];
   std::snprintf(text, sizeof text, "%.2g", length);
@@ -38,9 +49,8 @@ std::string two_digits(double length) {
 }  // namespace
 
 std::optional<Diagnostic> small_target(double target, const std::vector<MinTets>& needs) {
-  double all = 0;
-  for (const MinTets& need : needs) all += need.tets;
-  if (target >= all || all < min_estimate) return {};
+  const double all = sum_of(needs);
+  if (target >= certain_share * all || all < min_estimate) return {};
   std::vector<MinTets> most = needs;
   std::stable_sort(most.begin(), most.end(),
                    [](const MinTets& a, const MinTets& b) { return a.tets > b.tets; });
@@ -75,7 +85,18 @@ void compare_with_target(std::vector<MinTets> needs, PrepareRun& run) {
   run.report.diagnostics.push_back(*found);
 }
 
-void forget_small_target(PrepareReport& report) {
+void settle_small_target(PrepareRun& run, double target_slack, double poor_percent) {
+  PrepareReport& report = run.report;
+  const double asked = static_cast<double>(run.options.target.tets.value_or(0)),
+               reached = static_cast<double>(report.result->tets);
+  // The estimate is of tets above the default bound.
+  const bool poor =
+      run.options.shapes.bound() <= default_min_solid_angle && report.result->below_percent > poor_percent;
+  const bool too_many = reached > (1 + target_slack) * asked;
+  // The rule of thin walls names a better number.
+  const bool for_walls =
+      too_many && report.mesher && static_cast<double>(report.mesher->filling_tets) > asked;
+  if ((poor || too_many) && !for_walls && reached <= max_reached * sum_of(report.min_tets)) return;
   std::erase_if(report.diagnostics,
                 [](const Diagnostic& d) { return d.code == DiagnosticCode::target_too_small; });
 }

@@ -20,7 +20,10 @@ bool target_decides(const PrepareRun& run);
 /// before the work begins and reports it.
 void compare_with_target(std::vector<MinTets> needs, PrepareRun& run);
 
-/// Removes the report of a target that was large enough after all.
-void forget_small_target(PrepareReport& report);
+/// Removes the report of a small target if the result is good, or shows better what it takes.
+/// \param target_slack share of the target by which the result may miss it
+/// \param poor_percent tets below the bound from which on shapes are poor
+/// \pre `run.report` has the statistics of the result
+void settle_small_target(PrepareRun& run, double target_slack, double poor_percent);
 
 }  // namespace tetwright
