@@ -184,8 +184,8 @@ def test_counts_too_small_for_a_thin_label_are_noted():
     radius = np.linalg.norm(grid, axis=0)
     skinned = (radius < 9).astype(np.uint8) + (radius < 10.5)
     with pytest.warns(tetwright.ShortfallWarning):
-        few = tetwright.prepare(skinned, target_tets=100, max_iterations=1, threads=1)
+        few = tetwright.prepare(skinned, target_tets=300, threads=1)
     needs = {m["name"]: m["tets"] for m in few.stats["min_tets"]}
     assert needs["label_1"] > 3 * needs["label_2"]
     assert [d.code for d in few.diagnostics].count("target-too-small") == 1
-    assert any("100 is too small for good shapes: the materials take at least about " in note for note in few.notes)
+    assert any("300 is too small for good shapes: the materials take at least about " in note for note in few.notes)
